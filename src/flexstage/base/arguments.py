@@ -90,7 +90,7 @@ class CheckedFields:
 def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function to convert or refuse its arguments according to its annotations.
 
-    Raises `DesignError` with the name of the parameter. If a stage is passed instead of a model or result of the stage, raises `TypeError`
+    A wrong argument raises `DesignError` with the name of its parameter. A stage passed instead of its model or result raises `TypeError`
     with the probable call.
 
     >>> def bend(ends: tuple[str, ...], *, load: float = 1.0) -> float:

@@ -29,7 +29,7 @@ class Register(Generic[Entry]):
         yield from dict.fromkeys(offer.name for offer in _offered(self.group) if offer.name not in self.own)
 
     def get(self, kind: str) -> Entry | None:
-        """Return the entry of a kind, or `None` if there is none. Raises `DesignError` for an entry that cannot be loaded or is duplicate.
+        """Return the entry of a kind, or `None` if there is none. Raises `DesignError` if the entry cannot be loaded or exists twice.
 
         >>> Register("flexstage.nothing", {"leaf": 1.0}).get("leaf")
         1.0
@@ -41,7 +41,7 @@ class Register(Generic[Entry]):
         return self.own[kind] if kind in self.own else _load(offers[0]) if offers else None
 
     def offer(self, kind: str) -> str:
-        """Return name and version of the package that provides a kind; an empty string for own kinds."""
+        """Return name and version of the package that provides a kind; an empty string for a kind of flexstage itself."""
         return ", ".join(_distribution(offer) for offer in _offered(self.group) if offer.name == kind)
 
     @property

@@ -6,7 +6,7 @@ import numpy as np
 
 
 def generator(seed: int, *key: int) -> np.random.Generator:
-    """Return the random generator of a stream. Equal seed and key give equal numbers, other keys independent numbers.
+    """Return the random generator of a stream. The same seed and key give the same numbers; different keys give independent numbers.
 
     >>> first, again, other = (generator(7, *key).standard_normal() for key in ((1, 0), (1, 0), (1, 1)))
     >>> first == again, first == other

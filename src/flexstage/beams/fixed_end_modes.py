@@ -87,7 +87,7 @@ class FixedEndModes:
 def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> FixedEndModes:
     """Compute the first `count` fixed-end bending modes along y (`axis` 1) or z (2) at `stations` (s,): x over the half length.
 
-    Compared with Euler's clamped-clamped beam, whose frequencies are 22.3733, 61.6728, 120.903 times (E I / (rho A L^4))^(1/2):
+    The example compares them with Euler's clamped-clamped beam: 22.3733, 61.6728 and 120.903 times (E I / (rho A L^4))^(1/2).
 
     >>> slender = Bending(length=1.0, rigidity=1.0, shear=1e9, mass=1.0, rotary=0.0)
     >>> (fixed_end_bending(1, slender, 3, np.zeros(1)).squares ** 0.5).round(3).tolist()

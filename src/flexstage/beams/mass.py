@@ -71,8 +71,8 @@ def _has_fixed_end_modes(part: Part) -> bool:
 def consistent_mass(beam: Beam) -> Array:
     """Compute the consistent mass (..., 12, 12) of a beam; see `mass`.
 
-    The motions along the axis, about the axis, and in two planes are decoupled. For a beam symmetric about its centre, the mean and the
-    difference of the end motions are also decoupled. Only the nonzero entries are integrated, over half the beam.
+    The motions along the axis, about the axis, and in two planes are decoupled. If the beam is symmetric about its centre, the mean of the
+    end motions is decoupled from their difference. Only the nonzero entries are integrated, over half the beam.
 
     >>> from flexstage.beams.piezo import piezo_beam
     >>> from flexstage.parts.piezo import Piezo

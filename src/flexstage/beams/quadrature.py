@@ -39,7 +39,7 @@ class Rule:
 class Stations:
     """Points of the half hinge: `position` x >= 0 [m], `rate` dx/du for the variable u of the rule, added height `growth` w [m].
 
-    All arrays are (..., m).
+    All arrays have the shape (..., m).
     """
 
     position: Array

@@ -35,10 +35,10 @@ _HALF = 0.5
 class NoiseBudget(InNotebook):
     """Noise budget: mean squares of outputs, at the samples. The contributions of the uncorrelated sources add up.
 
-    `squares` (p, k) [unit^2] has a row for each of `outputs` and a column for each of `sources`. `density` (f, p, k) is one-sided
-    [unit^2/Hz] over `frequencies` (f,) [Hz]: floor vibration at its true frequencies, white sources up to half the sampling rate, with
-    aliasing. `changes` (g,) are the rms changes of the readings of `gauges` between samples, before rounding, in resolution steps (NaN: no
-    rounding). `notes` list the assumptions and missing data of each kind of source.
+    `squares` (p, k) [unit^2] has a row for each of `outputs` and a column for each of `sources`. `density` (f, p, k) is the one-sided
+    density [unit^2/Hz] at `frequencies` (f,) [Hz]. Floor vibration is at its true frequencies; white sources are limited to half the
+    sampling rate, with aliasing. `changes` (g,) are the rms changes of the readings of `gauges` between samples, before rounding, in
+    resolution steps (NaN: no rounding). `notes` list the assumptions and missing data of each kind of source.
     """
 
     outputs: Annotated[tuple[Channel, ...], INNER]
@@ -97,7 +97,7 @@ class NoiseBudget(InNotebook):
 
     @property
     def rounding_is_white(self) -> Annotated[bool, VIEW]:
-        """Whether rounding is white noise, as the budget assumes. Otherwise use the simulated rms."""
+        """Whether rounding is white noise, as the budget assumes. If it is not, use the simulated rms."""
         return not self.slowly_rounding
 
 
@@ -107,13 +107,13 @@ def noise_budget(
 ) -> NoiseBudget:
     """Compute the noise budget of a loop: mean squares of `outputs` by floor, gauges, converters and amplifiers.
 
-    The default outputs are the platform's six motions relative to the ground. `floor` contains one-sided densities by ground motion,
-    `ground.x` ..., which are integrated over `band` (low, high) [Hz]. White sources are computed by Lyapunov's equation, over all
-    frequencies (`white_system`); floor vibration by Gauss quadrature over the band. Between gauges and hold a ground motion e^{j omega t}
-    is sampled as e^{j omega k T}. With S_y the noise response of the sampled loop and G the stage's responses, y = [G_y(j omega) + S_y(e^{j
-    omega T}) G_gap(j omega)] w at the samples. Aliasing is therefore exact, also above half the sampling rate. Noise of amplifiers without
-    lag is integrated in the same way over the band. Raises `DesignError` for an unstable loop, with its growth rate, and for a continuous
-    loop.
+    The default outputs are the platform's six motions relative to the ground. `floor` maps ground motions (`ground.x`) to one-sided
+    densities. Gauss quadrature integrates floor vibration, noise of leg sensors and noise of amplifiers without lag over `band` (low, high)
+    [Hz]. All other sources are white: Lyapunov's equation gives their mean squares over all frequencies (`white_system`). Between gauges
+    and hold a ground motion e^{j omega t} is sampled as e^{j omega k T}. At the samples, the response to a ground motion w is therefore y =
+    [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w. G are the stage's responses, and S_y is the response of the sampled loop to gauge
+    noise. Aliasing is exact, also above half the sampling rate. Raises `DesignError` for an unstable loop, with its growth rate, and for a
+    continuous loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_budget(integral_loop(), {"ground.x": Spectrum(1e-18)}, (0.1, 1000.0), ("relative.x",))
@@ -207,7 +207,8 @@ def _source(name: str) -> Source:
 def disturbance_response(closed: Loop, inputs: tuple[str, ...], outputs: tuple[str, ...], frequencies: Array) -> Array:
     """Compute the response (f, p, m) of a loop to continuous disturbances of its stage: `ground.x` ... or an actuator's stroke.
 
-    At the samples, y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w. `frequencies` (f,) [Hz] may exceed half the sampling rate.
+    At the samples, the response is G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega) (see `noise_budget`). `frequencies` (f,) [Hz] may
+    exceed half the sampling rate.
     """
     given = closed.plant
     own = [name for name in outputs if name in given.system.output_names]

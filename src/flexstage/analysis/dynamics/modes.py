@@ -71,9 +71,9 @@ class Modes(Result):
     compliance. `bodies` names the rows of `energies` (..., b, k), the kinetic-energy fractions of bodies and links. `chosen` (..., k) marks
     platform modes.
 
-    `names`, `in_plane` and `platform` (indices of the platform modes) are for the first design. A mode with equal fractions of several
-    bodies is named after all of them. `limit` determines only the number of listed modes. If `partial`, the stage is large and only its
-    lowest modes were computed.
+    `names`, `in_plane` and `platform` (indices of the platform modes) describe the modes of the first design. A mode with equal fractions
+    of several bodies is named after all of them. `limit` determines only the number of listed modes. If `partial`, the stage is large and
+    only its lowest modes were computed.
     """
 
     frequencies: Array
@@ -108,7 +108,7 @@ class Modes(Result):
 
     @property
     def listed(self) -> Annotated[int, VIEW]:
-        """Number of listed modes: all below the limit, at least 24, and all up to the last platform mode or local mode near one."""
+        """Number of listed modes: all below `limit`, but at least 24, and at least all up to the last `platform` or `local` mode."""
         below = int(np.sum(first_design(self.frequencies, 1) < self.limit)) if np.isfinite(self.limit) else 0
         last = max((*self.local, *self.platform), default=-1) + 1
         return min(len(self.names), max(below, last, _LISTED))
@@ -159,11 +159,11 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Eq. 28 of Shin & Moon).
 
-    At a platform mode, all modes up to this mode together reach a tenth of the platform's static compliance in one more direction
-    (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align
-    with the platform's axes. Shapes without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed.
-    Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes
-    are computed.
+    A platform mode is a mode at which the sum of the modal compliances reaches a tenth of the platform's static compliance in one more
+    direction (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that
+    shapes align with the platform's axes. Shapes without platform motion align with the coordinates that move most. Modes below `limit`
+    [Hz] are listed. Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of
+    the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -221,7 +221,7 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
 def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
     """Return groups of indices of ascending eigenvalues omega^2 whose frequencies agree within `gap` or rounding error.
 
-    Eigenvalues are computed as 1/lambda. Their relative rounding error is eps times their ratio to the least eigenvalue, times a factor.
+    The solver computes 1/omega^2. The relative rounding error of omega^2 is therefore proportional to its ratio to the least eigenvalue.
 
     >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]

@@ -46,10 +46,10 @@ class Moving:
 def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     """Pair each platform mode, by index, with the most similar mode of another model.
 
-    The modal assurance (Allemang and Brown 1982) is weighted by kinetic energy. The modes of both models are converted
-    by least squares from their common motion outputs to the coordinates of the smaller model, whose inertia gives the kinetic energy.
-    Rotations are multiplied by the platform's radius of gyration. The modal
-    assurance is relative to each mode's total kinetic energy, including motion without an output.
+    The modal assurance (Allemang and Brown 1982) is weighted by kinetic energy. A least-squares fit of the common motion outputs converts
+    the modes of both models to the coordinates of the smaller model. The inertia of this model gives the kinetic energy. In the fit,
+    rotations are multiplied by the platform's radius of gyration. The modal assurance is relative to each mode's total kinetic energy,
+    including motion without an output.
 
     Any mode of the other model can be paired, also a local mode. Modes closer than 1 % are compared as a subspace and paired in ascending
     order. Below a modal assurance of `RELIABLE`, the paired mode is only the most similar one, not a match.

@@ -41,8 +41,8 @@ class Spectrum(CheckedFields):
     """One-sided power spectral density of an input.
 
     `density` is one number (white noise), or a table (f,) over `frequencies` (f,) in Hz. Its unit is (unit of the input)^2/Hz; with `rate`,
-    it is (unit of the velocity or acceleration)^2/Hz. A table is interpolated log-log and is zero outside. Example for floor acceleration:
-    `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    it is (unit of the velocity or acceleration)^2/Hz. A table is interpolated log-log; outside its frequencies, the density is zero.
+    Example for floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array
@@ -92,7 +92,7 @@ class RandomResponse(Result):
 
     @property
     def units(self) -> Annotated[tuple[str, ...], VIEW, Axes("responding")]:
-        """Unit of each output's rms value; mean squares have the square of this unit, densities the square per hertz."""
+        """Unit of each output's rms value. Mean squares have the square of this unit, densities the square of this unit per hertz."""
         return tuple(channel.unit for channel in self.outputs)
 
 
@@ -107,10 +107,10 @@ def random_response(
 ) -> RandomResponse:
     """Compute densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2) for uncorrelated inputs.
 
-    `spectra` maps input names to one-sided densities. The names are single channels of `response` (`ground.z` is floor motion). `band` is
-    (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. Panels end at multiples of each
-    resonance's half width, at the points of tables and six times per decade. Every peak is thus resolved (error 1e-8, compared with the
-    Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
+    `spectra` maps input names to one-sided densities. An input is a single channel of `response` (`ground.z` is floor motion). `band` is
+    (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. The frequency panels end at
+    multiples of each resonance's half width, at the points of tables and six times per decade. These panels resolve every peak (error 1e-8,
+    compared with the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -38,7 +38,7 @@ def response(
 
     - channels (`platform.x`, gauge `S1`, stroke `B1`, `chuck.fz`);
     - wrench components on any body (`B4/lever.fz`);
-    - the ground's motion (`ground.x` ... `ground.rz`, absolute displacement);
+    - absolute displacements of the ground (`ground.x` to `ground.rz`);
     - groups of six components (`platform`, `ground`).
 
     `frequencies` (f,) are in Hz (default: `default_frequencies`). `damping` replaces the damping law of the design. Structural damping
@@ -64,7 +64,7 @@ def transmissibility(
     """Compute the transmissibility (..., f, p, 6): absolute motion of outputs over motion of the ground at the platform's reference.
 
     T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. Damping acts on motion relative to the ground. At low frequency, T of the
-    platform's twist tends to the unit matrix. Gauges and stress resultants depend only on relative motion: their T tends to zero.
+    platform's twist tends to the unit matrix. T of gauges and stress resultants tends to zero, because they depend only on relative motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -33,7 +33,7 @@ T = TypeVar("T")
 
 
 class Description(CheckedFields):
-    """Base of descriptions: immutable, compared and hashed by content.
+    """Base class of all descriptions, which are immutable and are compared and hashed by content.
 
     Two digests exist: `digest(value)` covers the whole document; `digest(value, physics=True)` omits fields marked `DOCUMENT_ONLY`. Floats
     are compared by their bits. The digest of a class from another package includes the package's version.
@@ -53,7 +53,7 @@ class Description(CheckedFields):
 
 
 def keep(function: Callable[P, T]) -> Callable[P, T]:
-    """Decorate a function of descriptions to cache its last 64 results by content, except for batches.
+    """Decorate a function of descriptions to cache its last 64 results by content. Results for batches are not cached.
 
     Successive designs often differ in one part only; the cached results of the other parts are reused. Cached arrays are read-only.
 

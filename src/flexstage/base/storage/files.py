@@ -185,7 +185,7 @@ def new_hdf(place: Path, size: int) -> Generator[Any]:
 
 
 class Child:
-    """Worker process that reads files. The first request starts it; the next request after a failure restarts it."""
+    """Worker process that reads files. The first request starts the process; the next request after a failure restarts it."""
 
     def __init__(self) -> None:
         self._worker: Worker | None = None

@@ -64,7 +64,7 @@ def parts(result: Any) -> Iterator[_Part]:
 
 
 def rows_of(source: Any) -> Sheet:
-    """Return a sheet: a mapping or sequence of records as rows, or one record's arrays along its first field of names."""
+    """Return a sheet with a row per record of a mapping or sequence, or a row per element of one record's arrays."""
     if isinstance(source, Mapping):
         return Sheet(owner_names(source), _columns([_record(each) for each in source.values()]))
     if isinstance(source, Sequence):
@@ -73,7 +73,7 @@ def rows_of(source: Any) -> Sheet:
 
 
 def owner_names(source: Any) -> dict[str, tuple[Any, ...]]:
-    """Return columns with the row names of a mapping, one column for each element of a key; empty for other values.
+    """Return columns with the row names of a mapping, one column for each element of its keys; no columns for another value.
 
     >>> owner_names({("raster", "B1"): 0, ("raster", "B2"): 0})
     {'name': ('raster', 'raster'), 'name 2': ('B1', 'B2')}

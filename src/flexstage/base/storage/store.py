@@ -37,7 +37,8 @@ _DAY = 86400.0
 def cache_folder() -> Path:
     """Return the path of the cache folder, which may not exist yet.
 
-    It is the environment variable FLEXSTAGE_CACHE, or by default `flexstage` in the user's cache folder. Raises `DesignError` if unknown.
+    The environment variable FLEXSTAGE_CACHE sets the path (default: `flexstage` in the user's cache folder). Raises `DesignError` if the
+    path is unknown.
 
     >>> cache_folder().is_absolute()
     True
@@ -298,7 +299,7 @@ def process_mark() -> str:
 def has_ended(mark: str, since: float) -> bool:
     """Return whether the process with a `process_mark` has ended; true for a mark of another machine.
 
-    `since` is the time [s since 1970] at which the process wrote: a process started later has reused the process number.
+    `since` is a time [s since 1970] at which the process was running. A process with the same number that started later is another one.
     """
     host, _, number = mark.partition("-")
     return host != _host() or not number.isdecimal() or not _is_running(int(number), since)

@@ -72,7 +72,9 @@ def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 
 
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
-    """Generate the controller of a loop as C99: texts by file of `controller.c` and its header. The stem is the prefix of C names.
+    """Generate the controller of a loop as C99; returns the texts of `controller.c` and its header, by file name.
+
+    The stem is the prefix of C names.
 
     With `legs` the code includes the force feedback of these legs. Raises `DesignError` for a name without `.c` or a reserved name.
 
@@ -169,7 +171,7 @@ def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
 
 
 def plant_file(given: Plant) -> bytes:
-    """Generate a MATLAB file (v5) of a plant: state space with names and units, both continuous and from hold to sampler.
+    """Generate a MATLAB file (v5) of a plant: state space with names and units, both continuous and sampled with a hold.
 
     Structures `continuous` and `sampled` (for a sampled loop) contain A, B, C, D, `step` [s] (0: continuous), inputs, outputs, their units
     and `states`. The file also contains the modes' frequencies [Hz] and damping ratios, simplifications, and provenance.

@@ -50,7 +50,7 @@ class Generator:
 class StageController:
     """Simulated closed-loop stage, in micrometres and microradians; `advance` continues the simulation.
 
-    Raises `DesignError` as `resolve` and `control_and_modes` do, and for an unstable loop.
+    Raises `DesignError` in the same cases as `resolve` and `control_and_modes`, and for an unstable loop.
     """
 
     def __init__(self, mechanism: Mechanism, setup: LoopSetup | None = None) -> None:

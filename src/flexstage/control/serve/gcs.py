@@ -52,7 +52,10 @@ class Session:
         self.trigger = 0
 
     def hear(self, line: bytes) -> bytes:
-        """Execute a line (without line end), and return the answer, possibly empty. A refused command sets the code for `ERR?`."""
+        """Execute a line (without line end), and return the answer, possibly empty.
+
+        A refused command sets the error code that `ERR?` returns.
+        """
         if self.stage.is_lost:
             self.stage.is_lost, self.error = False, Code.LOOP_UNSTABLE
         if len(line) > LONGEST:

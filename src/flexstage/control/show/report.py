@@ -50,7 +50,7 @@ def loop_report(found: LoopStudy) -> str:
 
 
 def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison) -> str:
-    """Write a controller comparison as an HTML page: the best for each quantity, the Pareto front, and values by coordinate."""
+    """Write a controller comparison as an HTML page: the best controller for each quantity, the Pareto front, and values by coordinate."""
     origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", __version__))
     data = stage_data(mechanism)
     best = ", ".join(f"{aim} by {kind_name(name)}" for aim, name in found.wins.items())

@@ -60,7 +60,7 @@ def short_tables(found: LoopStudy) -> list[Table | str | None]:
 def loop_table(found: LoopStudy) -> Table:
     """Tabulate the loop and its stability.
 
-    The rows are written individually, because each combines several results.
+    Each row combines several results.
     """
     plant, hardware = found.plant, found.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
@@ -154,7 +154,7 @@ def _controller_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def margin_tables(found: LoopStudy) -> list[Table | None]:
-    """Tabulate bandwidth and margins by coordinate; none in open loop."""
+    """Tabulate bandwidth and margins by coordinate; no tables in open loop."""
     margins = None if found.margins is None else found.margins.loops
     shifted = {percent(each.shift): each for each in found.shifted_peaks}
     return [result_table(each) for each in (found.bandwidths, margins, found.disk_margin, shifted or None) if each is not None]
@@ -210,7 +210,10 @@ def error_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def static_error_tables(found: RestErrors) -> list[Table]:
-    """Tabulate static open-loop errors, without and with correction of lost motion; rows are reached, columns commanded coordinates."""
+    """Tabulate static open-loop errors without and with correction of lost motion.
+
+    Rows are reached coordinates, columns are commanded ones.
+    """
     errors = {"the ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
     if found.other_gains is not None:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains
@@ -236,7 +239,7 @@ def _load_table(found: RestErrors) -> Table | None:
 
 
 def noise_table(found: LoopStudy) -> Table:
-    """Tabulate positioning noise: rms of every coordinate in regulation, by kind of source, and as simulated."""
+    """Tabulate the rms positioning noise of every coordinate in regulation: in total, by kind of source, and from a simulation."""
     budget, resting = found.noise, found.resting
     columns = {"rms": budget.rms}
     if resting is not None:

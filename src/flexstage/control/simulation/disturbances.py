@@ -14,7 +14,7 @@ from flexstage.control.simulation.machine import Machine
 
 @dataclass(frozen=True, eq=False)
 class ExternalInputs:
-    """External inputs: `disturbances` (n, w) of the plant, and additions to `readings` (n, g) [m] and `strokes` (n, m) [m]."""
+    """External inputs: `disturbances` (n, w) of the plant, and noise added to the `readings` (n, g) [m] and the `strokes` (n, m) [m]."""
 
     disturbances: Array
     readings: Array

@@ -24,8 +24,8 @@ from flexstage.models.linear.model import Channel
 class Amplifiers:
     """Amplifier model with one number per actuator (m,); strokes are free strokes relative to the bias.
 
-    The command is rounded to the converter's `step` [m] (0: no rounding). It is then limited to the range from `low` to `high` [m] and to
-    the rate `slew` [m/s]. The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without data).
+    The command is rounded to the converter's `step` [m] (0: no rounding). The rounded command is limited to the range from `low` to `high`
+    [m] and to the rate `slew` [m/s]. The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without data).
     """
 
     low: Array
@@ -40,8 +40,8 @@ class Amplifiers:
 class Relief:
     """Charge-drive reduction of the hysteretic stroke, which is the stroke minus the linear stroke of the same voltage.
 
-    `residual_hysteresis` (m,) is the fraction that remains. `leak` (m,) is the fraction of the removed part that returns per sample by
-    charge leakage, 1 - exp(-2 pi f T) for the drives' corners f.
+    `residual_hysteresis` (m,) is the fraction of the hysteretic stroke that remains. `leak` (m,) is the fraction of the removed stroke that
+    returns per sample by charge leakage: 1 - exp(-2 pi f T) for a drive's corner frequency f.
     """
 
     residual_hysteresis: Array
@@ -52,13 +52,13 @@ class Relief:
 class Machine:
     """Sampled loop as computed by a simulation.
 
-    Order within sample k: first, the readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`) are rounded to `resolution` (g,)
-    [m] (0: no rounding). A reading that is not finite or beyond `half_range` (g,) [m] (default: unlimited) is replaced by its gauge's last
-    valid one. Then follow pose = `pose` (f, g) y, error = reference - pose, and the `controller` (inputs any of `error.<c>`,
-    `reference.<c>`, `pose.<c>`, `applied.<actuator>`; outputs `command.<actuator>`). The voltage is computed by the inverse of
-    `compensation`, or is proportional to the command, and is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the
-    voltage (reduced by `relief`), or is proportional to it. Last, the states of plant and controller are computed for k + 1. `applied` is
-    the amplifiers' output minus the request: zero except at a limit.
+    A sample k begins with the readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), which are rounded to `resolution` (g,)
+    [m] (0: no rounding). The gauge's last valid reading replaces a reading that is not finite or beyond `half_range` (g,) [m] (default:
+    unlimited). The pose is `pose` (f, g) y, and the error is reference - pose. The `controller` computes `command.<actuator>` from any of
+    the inputs `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`. The voltage is computed by the inverse of `compensation`,
+    or is proportional to the command, and is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the voltage (reduced
+    by `relief`), or is proportional to it. Finally, the states of plant and controller are computed for sample k + 1. The input `applied`
+    is the amplifier's output minus its input: zero except at a limit.
 
     `plant` is sampled. Its inputs named in `actuators` are strokes, all others disturbances; strokes affect no gauge in the same sample.
     """
@@ -86,7 +86,7 @@ class Machine:
 
     @property
     def reach(self) -> Array:
-        """Largest valid readings (g,) [m]: half the gauges' range plus half their resolution, or the largest finite number."""
+        """Largest valid readings (g,) [m]: half the gauges' range plus half their resolution; the largest finite number without a range."""
         ends = np.full(len(self.gauges), np.inf) if self.half_range is None else self.half_range
         return np.minimum(ends + 0.5 * self.resolution, np.finfo(float).max)
 
@@ -138,8 +138,8 @@ def machine(
 ) -> Machine:
     """Assemble a plant with hardware and controller for simulation.
 
-    `electric` maps strokes to volts, which hysteresis and compensation require. `motions` are the plant outputs to keep
-    (default: all). Raises `DesignError` for a continuous loop, and as `Machine`.
+    `electric` maps strokes to volts, which hysteresis and compensation require. `motions` are the plant outputs to keep (default: all).
+    Raises `DesignError` for a continuous loop, and in the same cases as `Machine`.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.run import simulate

@@ -27,10 +27,10 @@ class Stream(IntEnum):
 def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int = 0) -> dict[str, Array]:
     """Generate series (samples,) by name for `simulate`: `ground.<c>` of the `floor`, noise of gauges and amplifiers.
 
-    The series are independent and Gaussian. Each depends only on its source and the seed. Ground motion is linear between samples (see
-    `ramped` for the error). Gauge noise is the noise after lag and filter, with exact aliasing (`gauge_noise`). Amplifier noise is white up
-    to half the sampling rate. Rounding is not included: the simulation rounds. Raises `DesignError` for a continuous loop, and for unknown
-    ground motions.
+    The series are independent and Gaussian. Each series depends only on its source and the seed. Ground motion is linear between samples
+    (see `ramped` for the error). Gauge noise is the noise after lag and filter, with exact aliasing (`gauge_noise`). Amplifier noise is
+    white up to half the sampling rate. Rounding is not included: the simulation rounds. Raises `DesignError` for a continuous loop, and for
+    unknown ground motions.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_series(integral_loop().plant, {"ground.x": Spectrum(1e-18)}, 1000, seed=3)
@@ -79,7 +79,7 @@ def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Ar
     """Shape white Gaussian noise by a one-sided density (f,) at the frequencies of a series twice as long; return half the series.
 
     X(f) = W(f) (S(f) / 2 T)^(1/2), W the transform of unit white numbers: Gaussian and stationary, with this density at its frequencies.
-    The discarded half removes the periodicity (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991).
+    Discarding half the series removes the periodicity (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991).
 
     >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # density 2 T: unit variance, the unchanged white noise
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))

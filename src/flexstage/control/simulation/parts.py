@@ -15,9 +15,10 @@ from flexstage.control.systems.system import System, select
 class Parts:
     """Matrices of plant and controller, by inputs and outputs.
 
-    Plant with strokes f, disturbances w, readings y, motions m: x+ = A x + `stroke` f + `disturbed` w, y = `reading` x + `reading_w` w, m =
-    `motion` x + `motion_f` f + `motion_w` w. Controller with reference r, pose q, applied a: z+ = `controller` z + `from_reference` r +
-    `from_pose` q + `from_applied` a, command = `command` z + `command_r` r + `command_q` q.
+    The plant with strokes f, disturbances w, readings y and motions m is x+ = A x + `stroke` f + `disturbed` w, y = `reading` x +
+    `reading_w` w, m = `motion` x + `motion_f` f + `motion_w` w. The controller with reference r, pose q and amplifier limitation a
+    (`applied`) is z+ = `controller` z + `from_reference` r + `from_pose` q + `from_applied` a, command = `command` z + `command_r` r +
+    `command_q` q.
     """
 
     A: Array
@@ -38,7 +39,7 @@ class Parts:
 
 
 def parts(given: Machine) -> Parts:
-    """Partition the matrices of a loop; the error is replaced by reference minus pose.
+    """Partition the matrices of a loop. Reference minus pose replaces the error as input of the controller.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

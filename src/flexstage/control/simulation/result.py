@@ -22,12 +22,12 @@ from flexstage.spatial.frame import COMPONENTS
 class Simulated(InNotebook):
     """Simulated loop over time: every series has a row per sample, `times` (n,) [s].
 
-    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] have a column for each of `coordinates`, the true `motions` (n, p) for each
-    of `channels`. Strokes (n, m) [m] from the bias have a column for each of `actuators`: the controller's `command`, `asked` (amplifier
-    input, after inverse and converter), `given` (amplifier output, after limits), and `stroke` at the stage. `volts` (n, m) are NaN for a
-    stack without data. `readings` (n, g) have a column for each of `gauges`, in its unit. `saturated` and `slewing` (m,) are the fractions
-    of samples at a range limit, and at a speed limit only. `out_of_range` (g,) is the fraction of samples with a reading out of range or
-    lost; the last valid reading then replaces it.
+    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] have a column for each of `coordinates`. The true `motions` (n, p) have a
+    column for each of `channels`. Four series of strokes (n, m) [m] from the bias have a column for each of `actuators`: `command` of the
+    controller, `asked` (amplifier input, after inverse model and converter), `given` (amplifier output, after limits), and `stroke` at the
+    stage. `volts` (n, m) are NaN for a stack without voltage data. `readings` (n, g) have a column for each of `gauges`, in its unit.
+    `saturated` and `slewing` (m,) are the fractions of samples at a range limit, and at a speed limit only. `out_of_range` (g,) is the
+    fraction of samples with a reading out of range or lost; the last valid reading then replaces it.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
@@ -81,7 +81,7 @@ class Excursion:
 def other_motions(found: Simulated, moved: str) -> dict[str, Excursion]:
     """Compute the cross-axis error: largest motion along every axis except the `moved` one, from its reference or from zero.
 
-    Includes all recorded platform axes, controlled or not, of any unit.
+    The result includes all recorded platform axes, controlled or not, translations and rotations.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -170,8 +170,9 @@ def _rms(values: Array) -> Array:
 class StepFigures:
     """Step response figures by coordinate (f,): `settling` time [s] until the true error stays within `band` [m, rad].
 
-    The settling time is infinite if the error does not settle. `overshoot` is the largest excess over the step, relative to the step,
-    `undershoot` the same in the opposite direction (NaN without a step). `residual` [m, rad] is the true error at the end.
+    The settling time is infinite if the error does not settle. `overshoot` is the largest excess over the step, relative to the step;
+    `undershoot` is the largest motion in the opposite direction, relative to the step (both NaN without a step). `residual` [m, rad] is the
+    true error at the end of the simulation.
     """
 
     coordinates: tuple[Channel, ...]

@@ -19,10 +19,10 @@ _NONE: Mapping[str, Array] = {}
 def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annotated[Array, GAPS]] = _NONE) -> Simulated:
     """Simulate the loop's response to a reference (n, f) [m, rad] and disturbances (n,), from rest, sample by sample.
 
-    `disturbances` are `ground.<c>`, `platform.fx` ... (further inputs of the plant), `noise.<gauge>` [m] added to a reading before rounding
-    (not finite: lost reading), `noise.<actuator>` [m] added to a free stroke. The simulation is deterministic (see `noises`). Between
-    samples the plant is exact for zero-order-hold strokes and wrenches and linear ground motion (see `zero_order_hold`), without
-    integration error. Raises `DesignError` for unknown names, different lengths, and diverging numbers.
+    `disturbances` are named series: `ground.<c>`, `platform.fx` and other inputs of the plant; `noise.<gauge>` [m], added to a reading
+    before rounding (not finite: lost reading); `noise.<actuator>` [m], added to a free stroke. The simulation is deterministic (see
+    `noises`). Between samples, strokes and wrenches are constant and ground motion is linear; the plant has no integration error (see
+    `zero_order_hold`). Raises `DesignError` for unknown names, different lengths, and diverging numbers.
 
     >>> import numpy as np
     >>> from flexstage.control.example import integral_loop

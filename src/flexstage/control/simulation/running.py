@@ -18,7 +18,7 @@ from flexstage.control.simulation.result import Series
 class RunningLoop:
     """Loop simulated by `advance`, initially at rest.
 
-    `disturbances` are series (`count`,) by name as for `simulate`; the default `count` is the longest length. From their end they are
+    `disturbances` are series (`count`,) by name as for `simulate`; the default `count` is the longest length. At their end, the series are
     replayed backwards, which preserves noise spectra. An axis that is not `held` uses its pose as reference: its error is zero, without
     restoring action.
     """

@@ -20,10 +20,10 @@ LARGEST = number(Precision.DOUBLE.largest)
 def controller_code(given: Machine, name: str = "controller", about: str = "") -> Program:
     """Generate the part of a loop that a computer executes: pose, error, controller, inverse hysteresis, converter, limits, voltages.
 
-    Inputs are `reference.<c>` and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`, `command`, the strokes `asked`
-    (before the limits) and `given` (applied), both [m] from the bias, `volts` if the stacks' ranges are known, and `status`. The
-    integrators use the applied strokes (anti-windup). Non-finite readings, readings beyond the gauge's range and non-finite references are
-    rejected. The program then uses the last valid value (initially zero), and `status` reports this. All states stay finite.
+    Inputs are `reference.<c>` and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`, `command`, `asked`, `given`,
+    `status` and, if the stacks' ranges are known, `volts`. The strokes `asked` (before the limits) and `given` (applied) are in m from the
+    bias. The integrators use the applied strokes (anti-windup). The last valid value (initially zero) replaces a non-finite reading or
+    reference and a reading beyond the gauge's range; `status` reports this. All states of the program stay finite.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

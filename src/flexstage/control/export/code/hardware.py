@@ -49,11 +49,11 @@ def hardware_code(
 ) -> Hardware:
     """Generate the controller of a loop as C99 for hardware; `law` is the controller if it consists of single PI or PID loops.
 
-    The gains of these loops are adjustable. Any other controller has modal form with fixed gains. `tested` is a simulation of the loop: the
-    generated test replays its reference and readings and compares the strokes. The step uses no library call and no heap. Sums have a fixed
-    order, rounding is to nearest, contraction is off, subnormals are kept. Finite inputs therefore give the same bits on every IEEE 754
-    processor. With `legs` a second function, `<name>_damp`, runs the sampled force feedback; the test also replays tensions. Raises
-    `DesignError` for an inverse hysteresis, which is not supported in this form.
+    The gains of PI and PID loops are adjustable. Any other controller has modal form with fixed gains. `tested` is a simulation of the
+    loop: the generated test replays its reference and readings and compares the strokes. The step uses no library call and no heap. Sums
+    have a fixed order, rounding is to nearest, contraction is off, subnormals are kept. Finite inputs therefore give the same bits on every
+    IEEE 754 processor. With `legs`, a second function, `<name>_damp`, computes the sampled force feedback, and the test also replays the
+    leg tensions. Raises `DesignError` for an inverse hysteresis, which is not supported in this form.
     """
     if given.compensation is not None:
         raise refuse("--hardware", *NO_INVERSE)

@@ -28,7 +28,7 @@ class Core:
     """Control law as C: state arrays with sizes, settings, and statements.
 
     `locals` are declared at the head. `command` computes the command from errors and states. `begin` sets the states so that the command
-    equals the last applied stroke. `next` computes the next states into arrays `next_<state>`. `tables` are at file level.
+    equals the last applied stroke. `next` computes the next states into arrays `next_<state>`. `tables` are declared at file level.
     """
 
     states: tuple[tuple[str, int], ...]

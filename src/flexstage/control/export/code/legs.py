@@ -23,9 +23,9 @@ _SWEPT, _LARGEST = 200, 1e-6
 def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
     """Generate a controller program with inner loops, stepped every `legs.step`; the pose controller's outputs are held in between.
 
-    Further inputs are `tension.<actuator>` [N], positive in tension. Outputs are `added`, the strokes of force feedback, and `total`, the
-    total strokes (controller plus force feedback) within the amplifiers' limits; `volts` are the voltages of `total`. The last valid value
-    replaces a tension that is not finite, and `tension_status` reports this.
+    Further inputs are `tension.<actuator>` [N], positive in tension. The output `added` contains the strokes of force feedback. The output
+    `total` contains the total strokes (controller plus force feedback) within the amplifiers' limits; `volts` are the voltages of `total`.
+    The last valid value replaces a tension that is not finite, and `tension_status` reports this.
     """
     strokes = {channel.name: channel for channel in given.strokes()}
     own, total = [strokes[name] for name in legs.actuators], given.strokes("total.")

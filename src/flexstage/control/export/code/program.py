@@ -56,7 +56,7 @@ class Program:
     """Fixed-step C99 program: the body of `code` is run every `step` [s].
 
     The header declares `<name>_input`, `_output`, `_state`, `<name>_init(state)` and `<name>_step(state, in, out)`. All numbers are
-    doubles, in SI units. The code uses no heap; only tables are static. With `settings` both functions also have an argument
+    doubles, in SI units. The code uses no heap; only tables are static. With `settings`, the init and step functions also have an argument
     `<name>_parameters` (settings and an enable flag), and call no library function.
     """
 

@@ -21,9 +21,10 @@ _FOLDERS = {("linux", "x86_64"): ("linux64", "so"), ("darwin", "x86_64"): ("darw
 def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this computer.
 
-    A communication step of the importer runs all samples of the program within the step. Sample times are multiples of the program's step
-    from the start. All samples use the inputs set before the communication step. Equal programs and compilers give identical bytes. Raises
-    `DesignError` without a compiler, or if FMI 2.0 has no name for this type of computer; `sources_only` omits the library.
+    A communication step of the importer runs all samples of the program within the step. Samples are at multiples of the program's step
+    after the start time. All samples use the inputs set before the communication step. Equal programs and compilers give identical bytes.
+    With `sources_only`, the unit contains no library. For a library, raises `DesignError` without a compiler, or if FMI 2.0 has no name for
+    this type of computer.
 
     >>> from flexstage.control.export.code.controller import controller_code
     >>> from flexstage.control.example import integral_loop

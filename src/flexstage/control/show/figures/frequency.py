@@ -124,7 +124,7 @@ def _measured_panel(axes: Any, found: ReadLines, index: int) -> None:
 
 
 def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
-    """Plot closed-loop poles (n,) in the z plane, unstable poles in red; and damping ratios over frequency, also of the stage `alone`.
+    """Plot closed-loop poles (n,) in the z plane, and the damping ratios of the loop and of the stage `alone` over frequency.
 
     >>> len(pole_figure(np.array([0.9 + 0.1j, 0.9 - 0.1j]), 1e-4).axes)
     2

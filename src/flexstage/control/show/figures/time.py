@@ -101,7 +101,9 @@ def error_figure(test: Simulated) -> Any:
 
 
 def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
-    """Plot rms errors (n, f) in the band by pass or period, with lengths above angles; dotted: the non-repeating component (f,), if known.
+    """Plot rms errors (n, f) in the band for each pass or period, with lengths above angles.
+
+    Dotted lines show the non-repeating component (f,).
 
     >>> len(lesson_figure(np.array([[1e-6], [1e-7]]), ["x"], ["m"], "pass").axes)
     1
