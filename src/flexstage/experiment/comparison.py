@@ -70,8 +70,8 @@ class ComparedMode:
     """Platform mode in model, finite elements and test, with frequencies in Hz.
 
     `number` counts the platform's modes from 1. `assurance` is the modal assurance criterion (MAC) of model and test at the sensors. For
-    repeated modes it is the fraction of the measured shape within the model's subspace. `fea_assurance` is the MAC of model and finite
-    elements for all motions that both have. If it is below 0.8, `fea` is absent.
+    repeated modes, `assurance` is the fraction of the measured shape within the model's subspace. `fea_assurance` is the MAC of model and
+    finite elements for all motions that both have. If `fea_assurance` is below 0.8, `fea` is absent.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -117,7 +117,7 @@ class ComparedMode:
 class RepeatedModes:
     """Repeated modes of the model (numbers from 1), and the largest angle [rad] between model and measured subspaces.
 
-    `angle` is absent if fewer modes were identified.
+    `angle` is absent if the subspaces have different dimensions, e.g. because fewer modes were identified.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -189,8 +189,8 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     real part of measured shapes. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to modes of the
     model so that the total MAC of all pairs is largest. Frequency differences have a small weight, which decides between shapes that the
     sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5. Measured modes
-    may also be paired with local modes of the model. Theory is the loaded stage if the permanent load is significant (see `load_effect`).
-    Raises `DesignError` without a common output.
+    may also be paired with local modes of the model. If the permanent load is significant, the model describes the loaded stage (see
+    `load_effect`). Raises `DesignError` without a common output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record

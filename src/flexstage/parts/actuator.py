@@ -17,10 +17,10 @@ from flexstage.parts.shape import Elastic, Order
 class Actuator(Elastic):
     """Part with an `input` of a physical quantity.
 
-    A stroke actuator (`input` is a displacement) has a free deformation s per unit of stroke u. Its force is k (dx - s u) for a relative
-    displacement dx of its faces. The `input` of a force actuator is a force or a current. The actuator exerts `wrench` per unit of input on
-    its second face, and the opposite wrench on its first face. A force actuator leaves all degrees of freedom free; its stiffness is a
-    separate term. A positive input pushes the faces apart.
+    A stroke actuator (`input` is a displacement) has a free deformation s per unit of stroke u. The force of a stroke actuator is k (dx - s
+    u) for a relative displacement dx of its faces. The `input` of a force actuator is a force or a current. The actuator exerts `wrench`
+    per unit of input on its second face, and the opposite wrench on its first face. A force actuator leaves all degrees of freedom free;
+    its stiffness is a separate term. A positive input pushes the faces apart.
     """
 
     input: ClassVar[Quantity] = DISPLACEMENT
@@ -39,7 +39,7 @@ class Actuator(Elastic):
     def free_deformation(self) -> Array:
         """Free deformation (..., 6) of the second face relative to the first, per unit of stroke, in the link's frame.
 
-        Zero for a force actuator.
+        The free deformation of a force actuator is zero.
         """
         return np.zeros(6)
 
@@ -63,7 +63,7 @@ class ForceLimit:
 
 
 class ThrustActuator(Actuator):
-    """Actuator with a force along x or a torque about x. A positive force pushes its faces apart.
+    """Actuator with a force along x or a torque about x. A positive force pushes the actuator's faces apart.
 
     `axis` is the index of the force or torque in the wrench: 0 or 3.
     """
@@ -174,7 +174,7 @@ class ChargedActuator(StrokeActuator):
     def below_zero(self) -> Number:
         """Fraction of the stroke below zero voltage; zero without a voltage range.
 
-        It is negative if the voltage range begins above zero.
+        The fraction is negative if the voltage range begins above zero.
         """
         if self.voltage_low is None or self.voltage_high is None:
             return 0.0

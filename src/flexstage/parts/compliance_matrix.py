@@ -36,8 +36,8 @@ class ComplianceMatrix(Elastic):
 
     Entries are in m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are the ideal degrees of
     freedom. `replaces` names the drawn part that the matrix replaces. The drawn part supplies the shape for the solid model, and the
-    material for drift and structural damping. `mass` is a point mass at the part's centre; half of it belongs to each end. With `centre` of
-    mass or `inertia` about that centre, in the axes of the link frame, the mass is a rigid solid.
+    material for drift and structural damping. `mass` is a point mass at the part's centre; half of it belongs to each end. If `centre` (of
+    mass) or `inertia` (about the centre of mass) is specified, in the axes of the link frame, the mass is a rigid solid instead.
     """
 
     kind: ClassVar[str] = "compliance_matrix"
@@ -90,7 +90,7 @@ class ComplianceMatrix(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class Joint(Description):
-    """Ideal joint without elasticity or mass: `free` degrees of freedom; all others are locked exactly. With none free, it is a weld."""
+    """Ideal joint without elasticity or mass: `free` degrees of freedom; all others are locked. If none is free, the joint is a weld."""
 
     kind: ClassVar[str] = "joint"
     free: tuple[Freedom, ...] = ()

@@ -26,8 +26,8 @@ class FileUnits(Enum):
 class Port(Description):
     """Port (interface frame) of a superelement, in the part's axes: origin `at`, x along `along`, z along `up`, perpendicular to x.
 
-    The six coordinates (x, y, z, rx, ry, rz) of a port are its twist at its origin, in its axes. In the file's matrices, they begin at
-    `row`, counted from 1.
+    The six coordinates (x, y, z, rx, ry, rz) of a port are its twist at its origin, in its axes. In the file's matrices, these coordinates
+    begin at `row`, counted from 1.
     """
 
     row: Annotated[int, Bound(1, 2**31)]
@@ -52,11 +52,12 @@ class Superelement(Elastic):
     Either `file` is a MAT or NPZ file with both matrices (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files.
     A viscous damping matrix D is optional (`arrays`, or `damping_file`). Coordinates that do not belong to a port are internal: nodal
     degrees of freedom or modal amplitudes. `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass,
-    damping). It identifies the version, and caches use it instead of the matrices. A relative path is relative to the design file.
+    damping). The digest identifies the version of the matrices, and caches use the digest instead of the matrices. A relative path is
+    relative to the design file.
 
-    The internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA J. 6, 1313, 1968). This reduction preserves
-    statics and total mass. Either a number of `modes` is kept (0: Guyan condensation, AIAA J. 3, 380, 1965), or the modes `below` a
-    frequency, or all modes.
+    The internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA J. 6, 1313, 1968). The reduction to modes
+    preserves statics and total mass. The model keeps a number of `modes` (0: Guyan condensation, AIAA J. 3, 380, 1965) or the modes `below`
+    a frequency; by default, it keeps all modes.
 
     `mass`, `centre` of mass and `inertia` about this centre, in the part's axes, are compared with the matrices. `loss_factor` is the loss
     factor of the stiffness. `reflected`: use the mirror image of the file's part in its x-z plane; `ports`, `mass`, `centre` and `inertia`
@@ -83,12 +84,12 @@ class Superelement(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom: none, as for a rigid body; a link may specify others."""
+        """Ideal degrees of freedom: none, as for a rigid body; a link may specify free degrees of freedom."""
         return ()
 
     @property
     def is_axisymmetric(self) -> bool:
-        """False: its file determines its axes."""
+        """False, because the file determines the axes of a superelement."""
         return False
 
     @property

@@ -130,7 +130,7 @@ def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
 
 
 def number(value: float, digits: int = DIGITS) -> str:
-    """Format a number to `digits` significant digits, without trailing zeros. Only numbers outside 1e-4 ... 1e6 have an exponent.
+    """Format a number to `digits` significant digits, without trailing zeros. Only magnitudes below 1e-4 or above 1e6 have an exponent.
 
     >>> number(15.4499), number(-0.0000123456), number(2e9), number(float("nan"))
     ('15.45', '-1.2346e-5', '2e9', '-')

@@ -22,8 +22,8 @@ def to_csv(result: Any) -> dict[str, str]:
     r"""Return every part of a result as CSV (RFC 4180), by the part's path in the document, with SI units in the column heads.
 
     The first columns are names. Numbers are not rounded; an unknown number is an empty cell. Texts that a spreadsheet would execute as
-    formulas (they start with `=`, `+`, `-` or `@`) begin with an apostrophe. If a column of a matrix has no common unit, the units are in
-    a column `unit`. If a row has no common unit either, each entry of the matrix is a row with its unit.
+    formulas (they start with `=`, `+`, `-` or `@`) begin with an apostrophe. If a column of a matrix has no common unit, the units are in a
+    column `unit`. If neither all columns nor all rows have common units, each entry of the matrix is a row with its unit.
 
     >>> to_csv({"gain": 2.0, "loss": {"B1": 0.1}})
     {'': 'gain\r\n2.0\r\n', 'loss': 'name,loss\r\nB1,0.1\r\n'}
@@ -49,7 +49,9 @@ class Grid:
 
 
 def grid_of(part: Sheet | Matrix) -> Grid:
-    """Convert a part of a result to a grid. Units of a matrix are in the heads or in a column; otherwise, each entry becomes a row.
+    """Convert a part of a result to a grid.
+
+    The heads or a column contain the units of a matrix; without common units, each entry becomes a row.
 
     >>> import numpy as np
     >>> grid_of(Matrix(np.array([[2.0, 3.0]]), ("x",), ("a", "b"), (("m", "N"),)))

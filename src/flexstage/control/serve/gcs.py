@@ -52,10 +52,7 @@ class Session:
         self.trigger = 0
 
     def hear(self, line: bytes) -> bytes:
-        """Execute a line (without line end), and return the answer, possibly empty.
-
-        A refused command sets the error code that `ERR?` returns.
-        """
+        """Execute a line (without line end), and return the answer, possibly empty. After a refusal, `ERR?` returns the error code."""
         if self.stage.is_lost:
             self.stage.is_lost, self.error = False, Code.LOOP_UNSTABLE
         if len(line) > LONGEST:

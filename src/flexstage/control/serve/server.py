@@ -33,7 +33,7 @@ _HTTP = re.compile(rb"\s*(?:GET|HEAD|POST|PUT|PATCH|DELETE|CONNECT|OPTIONS|TRACE
 
 @dataclass
 class Pace:
-    """Lag of simulated time behind the clock [s]: the `offset` of the clock, the largest lag `most`, and `lost` time."""
+    """Lag of simulated time behind the clock [s]: clock time `offset` at zero simulated time, largest lag `most`, time `lost`."""
 
     offset: float
     most: float = 0.0

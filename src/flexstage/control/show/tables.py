@@ -161,7 +161,7 @@ def margin_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:
-    """Tabulate margins from a test's responses, and of identified and design model at the same frequencies; none without a test."""
+    """Tabulate margins from measured responses and from both models at the same frequencies; no tables without a test."""
     seen = found.measured
     if seen is None:
         return []
@@ -210,10 +210,7 @@ def error_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def static_error_tables(found: RestErrors) -> list[Table]:
-    """Tabulate static open-loop errors without and with correction of lost motion.
-
-    Rows are reached coordinates, columns are commanded ones.
-    """
+    """Tabulate static open-loop errors without and with correction of lost motion: rows are reached, columns are commanded coordinates."""
     errors = {"the ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
     if found.other_gains is not None:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains

@@ -24,9 +24,7 @@ def rounder(steps: Array) -> Callable[[Array], Array]:
 
 
 class Actuation:
-    """Simulated actuators of a loop, initially at the bias.
-
-    Their state is the last applied strokes, and the states of hysteresis and inverse model.
+    """Simulated actuators of a loop, initially at the bias, with their last applied strokes and states of hysteresis and inverse model.
 
     >>> from dataclasses import replace
     >>> from flexstage.control.example import integral_loop

@@ -61,12 +61,13 @@ _EXPECTED = 1e-9
 def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...] = ()) -> Tuning:
     """Optimise a controller for the objective of a specification.
 
-    Optimises the control law of every loop, and the width and depth of its notches. A crossover beyond a mode is possible if margins hold
-    for all mode shifts. The search starts from a grid around the modes. It also starts from the controller of highest bandwidth (`tune`) if
-    the grid's result is not better. If that controller has its crossover beyond the modes, the grid is omitted. The result is at least as
-    good for the objective (`merit`) as that controller. Its stability follows from eigenvalues, its robustness from the coupled peak of S
-    of the sampled loop, for mode shifts within the spread. `known` tunings of a plant with fewer modes are tried first. Raises
-    `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
+    The variables are the control law of every loop, and the width and depth of its notches. A crossover beyond a mode is possible if
+    margins hold for all mode shifts. The search continues `known` tunings of a plant with fewer modes. Without a result, it starts from a
+    grid around the modes, unless the controller of highest bandwidth (`tune`) has its crossover beyond the modes. If the controller of
+    highest bandwidth is still better, the search also starts from this controller. The result is at least as good for the objective
+    (`merit`) as the controller of highest bandwidth, if this meets all requirements. Eigenvalues determine stability; the coupled peak of S
+    of the sampled loop, for mode shifts within the spread, determines robustness. Raises `DesignError` for an unstable open loop, for
+    contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -41,8 +41,8 @@ _STIFFER, _SOFTER = 4.0, 3.0
 class Bounds:
     """Bounds of a loop: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], maximum `overshoot`.
 
-    `noise` is the maximum rms noise in regulation. The first one or two plants (`plants`) must meet the rejection; for the second, 0.95 of
-    `rejection` is sufficient.
+    `noise` is the maximum rms noise in regulation. The first `plants` (1 or 2) plants must meet the rejection; for the second plant, 0.95
+    of `rejection` is sufficient.
     """
 
     rejection: float
@@ -56,9 +56,9 @@ class Bounds:
 class OneLoop:
     """Single loop with the others closed: the `point` of a `shape` defines its controller C.
 
-    C times `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz]. `slow` (w, h - 1) are the plants for step responses, at all but
-    the first of the evenly spaced `lines` (h,) [Hz] from 0 to half the rate. `disturbed` and `heard` (f,) are mean squares of floor and
-    gauge noise, which |S|^2 and |T|^2 of the first plant multiply.
+    C times `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz]. Step responses use the evenly spaced frequencies `lines` (h,)
+    [Hz] from 0 to half the step sampling rate. `slow` (w, h - 1) are the plants at all `lines` except 0. The mean square of noise is the
+    sum of `disturbed` (f,) |S|^2 from the floor and `heard` (f,) |T|^2 from gauges, for the first plant.
     """
 
     shape: Shape
@@ -83,7 +83,7 @@ class OneLoop:
 
     @property
     def interval(self) -> float:
-        """Time between samples of steps [s]."""
+        """Time between samples of step responses [s]."""
         return 0.5 / float(self.lines[-1])
 
     @property
@@ -111,8 +111,8 @@ class OneLoop:
     ) -> Iterator[tuple[Array, Array]]:
         """Compute the residuals of all bounds except peaks of S, with derivatives; `quiet` is the weight of noise.
 
-        `near` contains S (n, f) of the plants with rejection, and its slopes (p, n, f). `slow` contains T (w, h) and a function that
-        returns its slopes (p, w, h - 1). Slopes are derivatives of ln C by the p parameters: dS = -S T slopes.
+        `near` contains S (n, f) of the plants that must meet the rejection, and slopes (p, n, f). `slow` contains T (w, h), and a function
+        that returns slopes (p, w, h - 1). Slopes are the derivatives of ln C with respect to the p parameters: dS = -S T slopes.
         """
         own, slopes = near
         above = self._rejected(bounds) & (np.abs(own) > _BELOW)
@@ -183,8 +183,8 @@ Squares: TypeAlias = tuple[float, Array, Array]
 def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[Array, Array], tries: int, enough: float = 0.0) -> Array:
     """Minimise half a sum of squares by the Levenberg-Marquardt method, with parameters between the limits `within` (low, high).
 
-    Points at which `at` returns None (unstable) are rejected. The search ends when half the sum of squares is at most `enough`, or when the
-    trend of the last steps does not lead to `enough`.
+    Points at which `at` returns None (unstable) are rejected. The search ends when half the sum of squares is at most `enough`, or
+    decreases too slowly to reach `enough`.
 
     >>> bowl = lambda point: (0.5 * float(point @ point), point, np.eye(1))
     >>> found = descend(bowl, np.array([2.0]), (np.array([-5.0]), np.array([5.0])), 20)

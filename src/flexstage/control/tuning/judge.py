@@ -46,7 +46,7 @@ def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judge
 def keeps_peak(seen: View, control: Callable[[], System], gains: Array, peak: float) -> bool:
     """Check that `judge_loop` finds a stable loop with a peak of S below `peak`; the fastest checks come first.
 
-    `control` constructs the controller. It is not called for a loop with too high a peak.
+    `control` constructs the controller; it is not called if a coarse check shows too high a peak.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -147,7 +147,9 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
 
 
 def first_rise(sizes: Array, frequencies: Array) -> float:
-    """Find the first upward crossing of 1, interpolated in logarithms; the last frequency without one, the first if it starts above 1.
+    """Find the first upward crossing of 1, interpolated in logarithms.
+
+    Returns the last frequency if `sizes` never reaches 1, and the first frequency if `sizes` begins at 1 or above.
 
     >>> round(first_rise(np.array([0.1, 0.8, 10.0]), np.array([1.0, 10.0, 100.0])), 2)
     12.26

@@ -25,7 +25,7 @@ _BELOW = 0.4
 
 
 def pi_laws(place: Place, step: float | None) -> list[PI]:
-    """Compute sampled PI laws with |C g| = 1 at the crossover: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a.
+    """Compute sampled PI laws with |C g| = 1 at the crossover: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a and the crossover w.
 
     >>> [round(found.integral, 6) for found in pi_laws(Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), 1e-4)][:1]
     [2.0]
@@ -35,7 +35,10 @@ def pi_laws(place: Place, step: float | None) -> list[PI]:
 
 
 def pid_laws(place: Place, step: float | None) -> list[PID]:
-    """Compute PI laws, and PID laws with two equal zeros at w/tan(a/2), filtered at ten times the frequency, at most 0.4 of the rate."""
+    """Compute PI laws, and PID laws with a double zero at w/tan(a/2) for angles a and the crossover w.
+
+    The derivative filter is at ten times the crossover, but at most 0.4 of the sampling rate.
+    """
     corner = _FILTER * place.frequency if step is None else min(_FILTER * place.frequency, _BELOW / step)
     without = [PID(each.proportional, each.integral, 0.0, corner) for each in pi_laws(place, step)]
     return [*without, *(_pid(place, warped(place.frequency, step), float(angle), corner) for angle in _PID_ANGLES)]
@@ -50,7 +53,7 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
 
 
 def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
-    """Compute the law of maximum damping, then laws of other feed-throughs and corners; the tracking gain solves |k/(j w) - Q| = 1/|g|."""
+    """Compute laws of several dampings, feed-throughs and corners. The tracking gain k solves |k/(j w) - Q| = 1/|g| at the crossover w."""
     found: list[IntegralResonant] = []
     turning = warped(place.frequency, step)
     if place.resonance is None or not place.static > 0.0:

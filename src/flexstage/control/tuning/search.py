@@ -119,7 +119,7 @@ _CLOSE = np.linspace(-0.06, 0.06, 25)
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """Search parameters: weight `quiet` of noise, maximum number of steps `tries`, half sum of squares `enough` at which to stop."""
+    """Search parameters: noise weight `quiet`, maximum number of steps `tries`, and half sum of squares `enough` that ends the search."""
 
     quiet: float
     tries: int
@@ -142,11 +142,11 @@ class Work:
         return min(tries, int(max(self.allowed - self.spent, 0.0) / size))
 
     def allow(self, share: float) -> None:
-        """Leave at least a share of the whole work for what follows."""
+        """Reserve at least a fraction `share` of the total work for the next searches."""
         self.allowed = max(self.allowed, self.spent + share * self._whole)
 
     def count(self, size: int) -> None:
-        """Add `size` evaluated responses."""
+        """Add `size` responses to the counter."""
         self.spent += size
 
     def report(self) -> None:
@@ -160,8 +160,8 @@ class Work:
 class Variant:
     """Variant of the plant: modes shifted by `offset`, commands times `gain`, delayed by `later` [s]; and its `limit` of |S|.
 
-    The delay rotates the phase by at most `turn` [rad]. Variants with smaller turns represent smaller delays, at which a mode far above the
-    crossover may be unstable.
+    The delay rotates the phase by at most `turn` [rad]. Variants with a smaller `turn` represent smaller delays, at which a mode far above
+    the crossover may be unstable.
     """
 
     offset: float
@@ -204,11 +204,11 @@ def farthest(spec: TuningSpec) -> float:
 class Field:
     """Search data: `plants` (v, f, k, k) from loop commands to poses at `frequencies` (v, f); `slow` (w, h, k, k) at the step `lines` (h,).
 
-    The frequencies of each plant are the model's times (1 + offset), so that the modes are at the same indices. `lines` are evenly spaced.
+    Each plant has the frequencies of the model times (1 + offset), so that its modes are at the same indices. `lines` are evenly spaced.
 
-    `disturbed` (f, k, d) is the amplitude of each loop's pose due to each floor motion, `heard` (f, k) due to gauge noise. Both are
-    weighted for sums of squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the limit of each loop's rms
-    noise in regulation; default: no limit. `fast` [Hz] is the known crossover, for step sampling and filters.
+    `disturbed` (f, k, d) is the amplitude of each loop's pose due to each floor motion, `heard` (f, k) due to gauge noise. The two
+    amplitudes are weighted for sums of squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the limit of
+    each loop's rms noise in regulation; default: no limit. `fast` [Hz] is the known crossover, for step sampling and filters.
     """
 
     seen: View
@@ -233,12 +233,12 @@ class Field:
 
     @cached_property
     def slow_strokes(self) -> Array:
-        """Plants (w, h, k, n) from all strokes at the step lines except the first, static one."""
+        """Plants (w, h, k, n) from all strokes at the step `lines` except the first, which is zero frequency."""
         return np.stack([self.seen.driven_at(self.variants[place].offset, self.lines[1:]) for place in self.spread])
 
     @property
     def size(self) -> int:
-        """Number of responses per evaluation, of all loops at all frequencies and lines, plus an equivalent for the CPU time of calls."""
+        """Number of responses per evaluation (all loops at all frequencies and lines), plus a constant for the CPU time of calls."""
         return (self.frequencies.size + len(self.slow) * len(self.lines)) * len(self.alike) + _AS_MANY
 
     @property
@@ -254,8 +254,8 @@ def _spread(spec: TuningSpec, cases: tuple[Variant, ...]) -> list[int]:
 def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0, work: Work | None = None) -> Field:
     """Prepare the data of a search from a view at the offsets of `variants`.
 
-    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` has the meaning of `Field.fast`; `work`
-    belongs to an earlier field whose search continues.
+    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` has the meaning of `Field.fast`; `work` is
+    the counter of an earlier field whose search continues.
     """
     drive, cases = seen.loops.drive, variants(spec)
     own = _frequencies(seen, max(each.offset for each in cases), places)
@@ -336,7 +336,7 @@ def _heard(seen: View) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """Search result by loop: shape, point, and the frequency `reached` [Hz] for the objective (0 without an objective).
+    """Search result: for each loop its shape, its point, and the frequency `reached` [Hz] for the objective (0 without an objective).
 
     `noises` are the rms in regulation with the loops of other blocks open, if known.
     """
@@ -366,7 +366,7 @@ class SearchResult:
 def search(within: Field, family: Family) -> SearchResult | None:
     """Search for the best loops: first each group of coupled loops, then all loops at once. Returns `None` without a stable result.
 
-    PID starts from the PI result. The search is deterministic, with starts on a grid.
+    The search for PID loops starts from the PI result. The search is deterministic, with starts on a grid.
     """
     found = _by_blocks(within, PI_FAMILY, None)
     if found is not None and family == PID_FAMILY:
@@ -468,7 +468,7 @@ def _with_derivative(shape: Shape, plain: Shape, point: Array) -> Array:
 
 
 def beside_one_another(grids: list[list[Array]]) -> list[tuple[Array, ...]]:
-    """Combine the starts of loops that are searched together. Starts of loops with a smaller grid are used several times."""
+    """Combine the starts of loops that are optimised together. If a loop has fewer starts, some of them are used several times."""
     most = max(map(len, grids))
     return list(zip(*([grid[place * len(grid) // most] for place in range(most)] for grid in grids), strict=True))
 
@@ -577,9 +577,12 @@ def _climb(within: Field, starts: list[SearchResult], wanted: list[float]) -> Se
 
 
 def loud_enough(within: Field, starts: list[SearchResult], wanted: list[float]) -> tuple[Field, SearchResult | None]:
-    """Return the first start that meets the frequency targets, and its field. If only the noise limit prevents this, raise the limit.
+    """Fit the starts in turn, and return a field and the first result that meets the frequency targets.
 
-    A loop with a tiny gain may have a high sensitivity crossover and low noise, but never settles: its noise is no reference for a balance.
+    If only the noise limit prevents a result, the returned field has a higher limit.
+
+    A loop with a tiny gain may have a high sensitivity crossover and low noise, but never settles: its noise is no useful reference for a
+    balance.
     """
     best = _first_kept(within, starts, wanted)
     if best is not None or not within.allowed:
@@ -650,14 +653,14 @@ class Joint:
 
     @cached_property
     def parts(self) -> Mapping[int, slice]:
-        """Slices of the parameter vector by loop, only for the first of equal loops."""
+        """Slices of the parameter vector by loop; equal loops have only one slice, under the first of them."""
         different = [loop for loop, first in enumerate(self.within.alike) if first == loop]
         ends = np.cumsum([0, *(len(self.found.points[loop]) for loop in different)])
         return {loop: slice(int(ends[place]), int(ends[place + 1])) for place, loop in enumerate(different)}
 
     @cached_property
     def loops(self) -> Mapping[int, tuple[OneLoop, float]]:
-        """The first of equal loops, each with its noise weight relative to the start."""
+        """All different loops, each with its noise weight divided by its rms noise at the start."""
         begun = one_loops(self.within, self.found)
         return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 
@@ -720,7 +723,7 @@ def _is_stable(whole: Array) -> bool:
 
 
 def one_loops(within: Field, found: SearchResult, whole: Array | None = None) -> list[OneLoop]:
-    """Evaluate each loop with the others closed: C g = 1/S_ii - 1, and S_ij/S_ii for disturbances of loop j, independent of C."""
+    """Evaluate each loop i with the others closed: C g = 1/S_ii - 1. S_ij/S_ii, for disturbances of loop j, does not depend on C."""
     whole = coupled_sensitivities(within.plants, found, within.frequencies) if whole is None else whole
     slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
     responses, slow_responses = found.responses(within.frequencies), found.responses(within.lines[1:])

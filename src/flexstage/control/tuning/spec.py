@@ -22,17 +22,17 @@ from flexstage.control.tuning.objective import SENSITIVITY, TuningObjective
 class TuningSpec(CheckedFields):
     """Tuning specification: `family` of the controller, requirements, disturbances and references.
 
-    Without an `objective`, every loop has its gain crossover at `bandwidth` [Hz] (default: the highest possible) and the specified
-    `notches`, with more notches at modes if `automatic`. With an objective, the controller is optimised: every loop must reach `rejection`
-    [Hz] and `settling` [s] (2 %; default: as good as possible). `overshoot` is the largest permitted overshoot of a step, `delay_margin`
-    [s] the smallest permitted delay margin of a loop. With `prefilter`, prefilters shape the references.
+    Without an `objective`, every loop has its gain crossover at `bandwidth` [Hz] (default: the highest possible) and contains the specified
+    `notches`. If `automatic`, more notches at modes are added. With an objective, the controller is optimised: every loop must reach
+    `rejection` [Hz] and `settling` [s] (2 %; default: as good as possible). `overshoot` is the largest permitted overshoot of a step
+    response, `delay_margin` [s] the smallest permitted delay margin of a loop. With `prefilter`, prefilters shape the references.
 
-    `sensitivity` is the maximum peak of S (poses as lengths): 2 = 6 dB implies gain margins of 2 and phase margins of 29 deg (Skogestad &
-    Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). Stability and peak must hold for relative shifts of all modes within
-    +-`spread`. With an objective, they must also hold for relative errors of all gains within +-`gain`.
+    `sensitivity` is the maximum peak of S (poses as lengths). A peak of 2 (6 dB) implies gain margins of 2 and phase margins of 29 deg
+    (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, equation 2.47). Stability and peak must hold for relative shifts of
+    all modes within +-`spread`. With an objective, stability and peak must also hold for relative errors of all gains within +-`gain`.
 
-    `expected` are the disturbances assumed by an observer, `floor` the spectra of floor motion by input, `feedforward` (n, f) the
-    feedforward strokes of the reference.
+    `expected` are the disturbances that an observer assumes. `floor` are the spectra of floor motion by input. `feedforward` (n, f) gives
+    the feedforward strokes from the reference.
     """
 
     family: Family
@@ -94,8 +94,8 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
 class Judgement:
     """Evaluation of a loop: `bandwidths` [Hz] by loop, `peak` of S and its `frequency` [Hz], spectral abscissa `growth` [1/s].
 
-    The bandwidths belong to the nominal plant. All other values are the worst over the mode spread. `offset` is the mode shift with the
-    highest peak or, in an unstable loop, with the largest growth.
+    The bandwidths belong to the nominal plant; `peak` and `growth` are the largest over the mode spread. `offset` is the mode shift with
+    the highest peak or, in an unstable loop, with the largest growth; `frequency` belongs to this shift.
     """
 
     bandwidths: tuple[float, ...]

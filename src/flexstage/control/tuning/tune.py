@@ -32,12 +32,12 @@ _CALM = (0.9, 0.8, 0.7, 0.6)
 def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     """Tune a controller to a specification without objective, evaluated on the whole sampled loop.
 
-    Every loop has a gain of 1 at the required bandwidth (default: the highest found, by trial from fast to slow and then by bisection). The
-    controller of the family with the lowest peak of S is selected, first without additional notches, then with them. The whole loop must be
-    stable by its eigenvalues, with a peak of S below the limit, also for all mode shifts within the spread. PI and PID then get the
-    strongest integrators within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is tuned by its
-    weights, in platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the highest bandwidth found, and a
-    remedy.
+    Every loop has a gain of 1 at the required bandwidth. By default, the tuner tries bandwidths from fast to slow and refines the highest
+    one by bisection. The controller of the family with the lowest peak of S is selected, first without additional notches, then with them.
+    The whole loop must be stable by its eigenvalues, with a peak of S below the limit, also for all mode shifts within the spread. Finally,
+    PI and PID get the strongest integrators within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is
+    tuned by its weights, in platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the highest bandwidth
+    found, and a remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -98,7 +98,7 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
 
 
 def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
-    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller; None for both without one.
+    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller. Both results are None if there is none.
 
     The highest of the `trial_bandwidths` that succeeds is refined by bisection, up to the next higher one. Other controllers may reach
     higher bandwidths.

@@ -36,8 +36,8 @@ _STANDS_OUT = 2.0
 class View:
     """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
 
-    `responses` (v, f, k, n) are from strokes to the loops' poses at `frequencies` (f,) [Hz]. They exist only for the first v offsets, which
-    are within the spread. `modes` [Hz] and `ratios` belong to the plant's modes.
+    `responses` (v, f, k, n) are from strokes to the loops' poses at `frequencies` (f,) [Hz], only for the first v offsets, which are within
+    the spread. `modes` [Hz] and `ratios` belong to the plant's modes.
     """
 
     plant: Plant
@@ -56,7 +56,7 @@ class View:
 
     @property
     def fastest(self) -> float:
-        """Highest bandwidth [Hz] to try, limited by hold and delay; in a continuous loop limited by the plant's last mode."""
+        """Highest bandwidth [Hz] to try. Its limits are hold and delay or, in a continuous loop, the plant's last mode."""
         return _fastest(self.plant)
 
     @property
@@ -116,7 +116,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
 
 
 def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
-    """Find the loops with the same responses `own` (v, f, k) as a `loop`: yields indices of earlier equal loops, then its own."""
+    """Yield the indices of all earlier loops with the same responses `own` (v, f, k) as `loop`, then the index `loop`."""
     largest = np.max(np.abs(own[..., loop]))
     yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
     yield loop

@@ -41,7 +41,7 @@ _UNSTABLE = 1e3
 
 @dataclass(frozen=True, eq=False)
 class RegulatorSpace:
-    """Search space: points are logarithms of the loops' bandwidths [Hz], the strokes' noise [m/Hz^0.5], the weights of the pose.
+    """Search space: points are logarithms of the loops' bandwidths [Hz], the strokes' noise [m/Hz^0.5], and the weights of the pose.
 
     Equal loops share their parameters.
     """
@@ -52,7 +52,7 @@ class RegulatorSpace:
 
     @property
     def firsts(self) -> tuple[int, ...]:
-        """Indices of the different loops, the first of equal ones only."""
+        """Indices of all different loops; of equal loops, only the first index."""
         return tuple(sorted(set(self.within.alike)))
 
     def controller(self, point: Array) -> LQG:
@@ -66,7 +66,7 @@ class RegulatorSpace:
         return with_observer(model, coordinates, weights, observer, self.feedforward)
 
     def outcome(self, point: Array) -> Outcome | None:
-        """Evaluate a point. Returns `None` without a design, or if the loop is unstable at the largest mode shifts.
+        """Evaluate a point. Returns `None` if the point gives no controller, or the loop is unstable at the largest mode shifts.
 
         The nominal loop is always stable, because regulator and observer are.
         """
@@ -83,10 +83,10 @@ class RegulatorSpace:
 def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
     """Optimise the weights relative to a known outcome: maximise the smallest improvement of the objective's quantities.
 
-    Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308), with coefficients for the dimension (Gao & Han, Computational
-    Optimization and Applications 51 (2012) 259). It starts from the best point of a grid. The grid is around the first mode and includes
-    the controller `begun`. If the crossover at `bandwidth` [Hz] of `begun` is above the modes, the grid is around `begun`. The search is
-    deterministic.
+    The method is the downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308), with coefficients that depend on the dimension (Gao &
+    Han, Computational Optimization and Applications 51 (2012) 259). The simplex starts from the best point of a grid. The grid extends
+    around the first mode and includes the controller `begun`. If the crossover at `bandwidth` [Hz] of `begun` is above the modes, the grid
+    is around `begun`. The search is deterministic.
     """
 
     def cost(point: Array) -> float:
@@ -170,7 +170,7 @@ def merit(spec: TuningSpec, found: Outcome) -> float:
 
 
 def worth(within: Field, found: Outcome) -> float:
-    """Compute the merit minus the weighted excess over bounds; peaks count for mode shifts within the spread only."""
+    """Compute the merit minus the weighted excess over bounds. Peaks count only for gain errors and mode shifts within the spread."""
     spec = within.spec
     limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in within.variants])
     return merit(spec, found) - _STEEP * _excess(spec, found, limits)

@@ -62,7 +62,7 @@ NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a
 class PlacedBody:
     """Body of the expanded stage with its frame, reference point (..., 3) and mass properties, in the stage's frame.
 
-    `drawn` contains the body and all bodies that name it in `of`. The mass is their total mass, computed with `materials`.
+    `drawn` contains the body and all bodies that name it in `of`. `mass` is the total mass of `drawn`, computed with `materials`.
     """
 
     name: str
@@ -151,8 +151,8 @@ class PlacedSuperelement:
     def welds(self) -> Iterator[PlacedLink]:
         """Yield joints from the body of the first port to the body of each other port, for the ideal model.
 
-        The joints are rigid; with two ports, the link may specify free degrees of freedom. Ports on the body of the first port have no
-        joint.
+        A joint locks all degrees of freedom that the link does not specify as free; only a link with two ports may specify them. Ports on
+        the body of the first port have no joint.
         """
         first, *others = self.ports
         free = self.link.free or ()
@@ -168,10 +168,10 @@ class PlacedSuperelement:
 class Assembly:
     """Expanded stage: all moving bodies, links and gauges by name. `actuators` maps input names to link names.
 
-    For a circuit of several force actuators, `actuators` contains the circuit's first link. `circuits` maps every actuator's link to its
-    input and sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements`
-    instead of `links`, because they join any number of bodies. Bodies that belong to another body (`of`) are not listed: their solids
-    belong to the owner. Solids of the ground are in `ground`.
+    If a circuit connects several force actuators, `actuators` contains the first link of the circuit. `circuits` maps every actuator's link
+    to its input and sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in
+    `superelements` instead of `links`, because they join any number of bodies. Bodies that belong to another body (`of`) are not listed:
+    their solids belong to the owner. Solids of the ground are in `ground`.
     """
 
     bodies: Mapping[str, PlacedBody]
@@ -267,7 +267,7 @@ def _polar_frame(pattern: Polar, angle: Number) -> Frame:
 def expand(mechanism: Mechanism) -> Assembly:
     """Expand a description into bodies and links: units placed by pattern, overrides applied, frames in the stage's frame.
 
-    The description must have passed its checks. The twist of a platform without a reference point is at its centre of mass.
+    The description must have passed its checks. A platform without a specified reference point has its centre of mass as reference point.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(expand(double_triangle()).links)
@@ -648,7 +648,7 @@ def _image(link: PlacedLink) -> PlacedLink:
 
 
 def apply_overrides(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
-    """Apply the `overrides` of the owners' addresses to a link and its part, in the owners' order.
+    """Apply the `overrides` of several addresses, `owners`, to a link and its part, in the order of `owners`.
 
     >>> from dataclasses import replace
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -51,8 +51,8 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """Compute all expansion coefficients; `ground` names the ground's material (default: `ground_of`; `none`: no expansion).
 
     A body has the material of its heaviest solid; without solids, the common material of its links. Compliance matrices expand like the
-    drawn parts that they replace. Other matrices and ideal joints have no length and no expansion. Raises `DesignError` with all materials
-    and stacks without a coefficient, and all bodies of unknown material.
+    drawn parts that they replace. Compliance matrices that replace no part, and ideal joints, have no length and no expansion. Raises
+    `DesignError` with a list of all materials and stacks without a coefficient and all bodies of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = expansion(double_triangle(), ground="steel")
@@ -88,7 +88,7 @@ def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
     """Return the ground's material: as requested by `asked` (`none`: no expansion), as in the description, or as in parts on the ground.
 
     The parts on the ground are its outlines or, without outlines, its links; they must all have the same material. Raises `DesignError` for
-    several materials or none: drift is then undefined.
+    parts of different materials, and without any material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ground_of(double_triangle())

@@ -78,7 +78,7 @@ class Layout:
 
 
 def layout(assembly: Assembly, inner: Mapping[str, int] | None = None, *, sparse: bool = False) -> Layout:
-    """Return the coordinate layout of an expanded stage with `inner` coordinates of links (default: none), dense or `sparse`.
+    """Return the coordinate layout of an expanded stage, dense or `sparse`. `inner` is the number of internal coordinates by link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -106,8 +106,8 @@ def is_single(assembly: Assembly) -> bool:
 def require_room(assembly: Assembly, matrices: float) -> None:
     """Raise `DesignError` for a stage whose dense matrices exceed the available memory.
 
-    `matrices` is the number of dense matrices. Each has 6 columns per body and 6 rows per body or link (the larger number), 8 bytes per
-    entry.
+    `matrices` is the number of dense matrices. A matrix has 6 columns per body, 6 rows per body or link (the larger number), and 8 bytes
+    per entry.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -184,7 +184,7 @@ def free_deformations(assembly: Assembly) -> Array:
 def with_ground(assembly: Assembly, order: Layout) -> Array:
     """Compute the motion (..., n, 6) of all coordinates if the ground moves rigidly, for a unit twist at the platform's reference point.
 
-    Internal coordinates are zero. Raises `DesignError` if there is no platform.
+    The rows of internal coordinates are zero. Raises `DesignError` if there is no platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -51,12 +51,12 @@ class Mount(Description):
 def mount(
     stage: Mechanism, name: str, carried: Mechanism, *, on: str = GROUND, pose: Pose | None = None, platform: bool | None = None
 ) -> Mechanism:
-    """Return the stage with another stage, `carried`, mounted on its body `on`. This body replaces the carried stage's ground.
+    """Return the stage with another stage, `carried`, mounted on its body `on`. The body `on` replaces the ground of `carried`.
 
-    Bodies, links, units, instances, parts, gauges and loads of the carried stage get the names `name/...`, with unchanged numbers. Its
-    overrides, tags and temperatures are kept; if `on` is the ground, also the ground's material. Its gravity, damping, requirements,
-    envelope, formulas and other properties of a whole stage are dropped. If `platform`, the carried stage's platform becomes the platform
-    of both (default: true if the stage has no body `platform`).
+    Bodies, links, units, instances, parts, gauges and loads of the carried stage get the names `name/...`; numbers do not change.
+    Overrides, tags and temperatures of the carried stage are kept, and if `on` is the ground, also the ground's material. Other properties
+    of the carried stage as a whole (gravity, damping, requirements, envelope, formulas) are dropped. If `platform`, the carried stage's
+    platform becomes the platform of both (default: true if the stage has no body `platform`).
 
     Raises `DesignError` for name clashes, an unknown body, a mirrored pose, or different expansion or temperature of a common ground.
 
@@ -268,8 +268,8 @@ def _provenance(stage: Mechanism, rename: _Names, carried: Mechanism) -> tuple[T
 def mount_all(stage: Mechanism, carried: Mapping[str, tuple[Mount, Mechanism]]) -> Mechanism:
     """Return the stage with all stages in `carried` mounted, each after the stage that carries it.
 
-    Ground properties specified in the stage apply to all. If the stage has no body `platform`, the topmost stage provides it. Raises
-    `DesignError` for several topmost stages.
+    Ground properties that the stage specifies apply to all mounted stages. If the stage has no body `platform`, the topmost stage provides
+    it. Raises `DesignError` for several topmost stages.
 
     >>> mount_all(Mechanism("bare"), {}).name
     'bare'

@@ -55,8 +55,8 @@ class Polar(Description):
 
     `first` is the *position angle* of the first instance, from x towards y. `facing` is the direction of each instance's x axis, which is
     then rotated by `turn` about z. Each instance's z axis is the stage's z axis (for `InstanceOrientation.AXIS`: x up, z inward). `step` is
-    the angle between instances (default: equal division of a full circle). `mirror`: use mirror images of all instances in the plane
-    through the stage's origin with that normal.
+    the angle between instances (default: equal division of a full circle). `mirror` is the normal of a mirror plane through the stage's
+    origin; all instances are then mirror images.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]
@@ -72,8 +72,8 @@ class Polar(Description):
 class Pose(Description):
     """Pose of a single instance: origin `at`, x axis `along`, z axis `up` (perpendicular, of any length).
 
-    Two points of the x axis may replace `at` and `along`: the origin `start`, and an `end` in the direction of x. `mirror`: use the mirror
-    image in the plane through the stage's origin with that normal.
+    Two points of the x axis may replace `at` and `along`: the origin `start`, and an `end` in the direction of x. `mirror` is the normal of
+    a mirror plane through the stage's origin; the instance is then the mirror image.
     """
 
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)

@@ -23,8 +23,8 @@ from flexstage.spatial.frame import Frame
 class Sight:
     """One term of a gauge's reading: `weight` times a `component` of the twist of `body` relative to `base`.
 
-    It is the component of the twist of `body` at `frame`, minus the component of the twist of `base` at `foot`, each in the axes of its
-    frame. The two frames differ only for gauges on links.
+    The relative component is the component of the twist of `body` at `frame`, minus the component of the twist of `base` at `foot`, each in
+    the axes of its frame. `frame` and `foot` differ only for gauges on links.
     """
 
     body: str
@@ -100,7 +100,7 @@ def link_names(text: str) -> tuple[str, ...]:
 
 
 def place_sum(name: str, place: GaugeSum, gauges: Mapping[str, GaugePlace], single: Mapping[str, PlacedGauge]) -> PlacedGauge:
-    """Return the terms of a sum from its members; nested sums are expanded."""
+    """Return a sum of gauges as a gauge with the weighted terms of all its members; nested sums are expanded."""
     members: dict[str, Number] = {}
     for member, weight in _members(place, gauges):
         members[member] = members.get(member, 0.0) + weight
@@ -121,7 +121,7 @@ def _members(place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[tupl
 
 
 def gauge_findings(mechanism: Mechanism, links: Collection[str]) -> Iterator[Finding]:
-    """Return errors in poses, links and sums of gauges whose sensors exist; `links` are the link names of the expanded stage."""
+    """Return errors in poses, links and sums of gauges with known sensors; `links` are the link names of the expanded stage."""
     for key, place in mechanism.gauges.items():
         if isinstance(place, GaugeSum):
             yield from _sum_findings(f"gauges.{key}", key, place, mechanism.gauges)

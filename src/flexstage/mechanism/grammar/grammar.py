@@ -244,7 +244,7 @@ class RecordNode(Node):
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Classes of its values: this one only."""
+        """Classes of the node's values: only one class."""
         return (self.record,)
 
     @property
@@ -346,7 +346,7 @@ class UnionNode(Node):
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Classes of its values: all alternatives."""
+        """Classes of the node's values: all alternatives."""
         return tuple(option.record for _, option in self.options)
 
     def name_of(self, value: Any) -> str:
@@ -390,25 +390,25 @@ class UnionNode(Node):
         return {"oneOf": schemas} if len(schemas) > 1 else schemas[0]
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Yield the members, as the node of the alternative does."""
+        """Yield the members by the node of the value's alternative."""
         return self.option(value).members(value)
 
     def child(self, value: Any, name: str) -> Node:
-        """Return the node of a member, as the node of the alternative does."""
+        """Return the node of a member by the node of the value's alternative."""
         return self.option(value).child(value, name)
 
     def key(self, value: Any, name: str) -> str:
-        """Return the file key of a member, as the node of the alternative does."""
+        """Return the file key of a member by the node of the value's alternative."""
         return self.option(value).key(value, name)
 
     def field_called(self, value: Any, key: str) -> str:
-        """Return the field for a key of a file, as the node of the alternative does."""
+        """Return the field for a key of a file by the node of the value's alternative."""
         return self.option(value).field_called(value, key)
 
 
 @dataclass(frozen=True)
 class FieldUnionNode(UnionNode):
-    """Object of one of several classes, identified by a field in the table; without such a field, the first class."""
+    """Object of one of several classes, identified by a field in the table. A table without such a field has the first class."""
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """Return an object of the alternative whose field is in the table."""
@@ -436,7 +436,7 @@ class Slot:
 
     @property
     def wrapped(self) -> UnionNode | None:
-        """Union whose alternatives' names are used as keys instead of the field's key; else `None`."""
+        """Union whose alternatives' names replace the field's key in files; `None` for a field with its own key."""
         return self.node if isinstance(self.node, UnionNode) and self.node.told_by is None else None
 
     @property
@@ -446,7 +446,7 @@ class Slot:
 
     @property
     def keys(self) -> list[str]:
-        """Possible file keys of the field."""
+        """All keys that the field can have in a file."""
         return [key for key, _ in self.alternatives]
 
     def alternative(self, raw: dict[str, Any], where: str, reader: Reader) -> tuple[str, Node]:

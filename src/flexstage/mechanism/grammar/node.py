@@ -62,8 +62,8 @@ class Reader:
     """State while a file is read: errors, tags by address, and sources of catalogue entries.
 
     `tagged`: tables may have tags; otherwise `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: no formulas
-    allowed). `formulas` contains the formulas that were read, by address. `bounds` are errors of numbers outside their bounds, which are
-    reported when the description is checked.
+    allowed). `formulas` contains the formulas that were read, by address. `bounds` contains the errors for numbers outside their bounds;
+    they are reported when the description is checked.
     """
 
     tagged: bool = True
@@ -125,7 +125,7 @@ class Writer:
 
 @dataclass
 class Definitions:
-    """Schemas of classes by name, for schema references. `tagged`: tables may have tags. `formulas`: numbers may be formulas."""
+    """Schemas of classes by name, for schema references. If `tagged`, tables may have tags; if `formulas`, numbers may be formulas."""
 
     tagged: bool = True
     formulas: bool = False
@@ -243,7 +243,7 @@ class NumberNode(Node):
         return _float(raw, where)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Return the formula, or the shortest string that is read back to the same bits; for a ratio, a number."""
+        """Return the formula, or the shortest string that is read back to the same bits. A ratio without formula is a number."""
         require_single(value, where)
         if where in writer.formulas:
             return writer.formulas[where]
@@ -463,7 +463,7 @@ class MatrixNode(VectorNode):
 
     @property
     def measures(self) -> None:
-        """None, because the entries have several quantities."""
+        """There is no common quantity, because the entries have several quantities."""
 
     @property
     def example(self) -> str:
@@ -659,7 +659,7 @@ def every(items: list[Any]) -> Any:
 
 
 def is_row(node: Node, raw: Any, length: int | None, where: str, reader: Reader) -> bool:
-    """Return whether a file's value is a list of that length (None: any); report an error if not."""
+    """Return whether a file's value is a list with `length` values (None: any number); report an error if not."""
     fits = isinstance(raw, list) and (length is None or len(raw) == length)
     if not fits:
         count = f"{length} values" if length is not None else "several values"

@@ -102,9 +102,10 @@ def tables(model: Nonlinear) -> Tables | None:
 
 
 def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, other: OtherTerms | None) -> CompiledResult:
-    """Iterate every case in C; requires `kernel` and `tables`. With `other` terms, which are valid only at these poses, iterate once.
+    """Iterate every case in C; requires `kernel` and `tables`.
 
-    The result equals `newton.iterate` up to rounding. The result of a case is bit-identical whatever the other cases are.
+    With `other` terms, which are valid only at the start, only one step is computed. The result equals `newton.iterate` up to rounding. The
+    result of a case is bit-identical whatever the other cases are.
     """
     library = kernel()
     assert library is not None  # noqa: S101  (the caller has asked)

@@ -169,14 +169,15 @@ def equilibrium(
     """Compute the equilibrium under `loads`: strokes and forces by actuator, wrenches by component (`platform.fy`).
 
     Loads are numbers, or arrays of cases. `hold` fixes coordinates of bodies and points: `platform.y` is a displacement [m], `platform.rz`
-    a component of the rotation vector [rad]. Their reactions are computed. `weight` is the fraction of gravity, `stated` the fraction of
-    specified forces and preloads. Wrenches keep their directions in space.
+    a component of the rotation vector [rad]. The result includes the reactions at fixed coordinates. `weight` is the fraction of gravity,
+    `stated` the fraction of specified forces and preloads. Wrenches keep their directions in space.
 
-    Every case is solved from the nominal position, or from `start`, under its full load. If this fails, the load is increased in steps,
-    then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
+    The iteration of every case starts at the nominal position, or at `start`, under the full load. If the iteration does not converge, the
+    load is increased in steps, then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
-    From the nominal position, an unstable state is also NaN. So is a state that is not on the path of equilibria from the unloaded stage,
-    along which all loads and fixed coordinates grow in proportion. `options` with `past` or without `arcs` permit such states.
+    Without `start`, the result is on the path of equilibria from the unloaded stage, along which all loads and fixed coordinates grow in
+    proportion. The result is NaN if a limit point, a bifurcation or an end of the path is before the full load. Other equilibria are
+    permitted by `options` with `past` or without `arcs`, if the unloaded stage is unstable, and beyond an imperfect bifurcation.
 
     Raises `DesignError` for unknown names.
 

@@ -42,8 +42,8 @@ def evaluate_designs(
 ) -> Array:
     """Evaluate results (d, ...) for a batch of d designs, given as one description with arrays; for a single design, (...).
 
-    Loads and fixed coordinates are as in `equilibrium`; axes of cases come after the axis of designs. For a design without an equilibrium,
-    the state is NaN, and so are the results.
+    The other arguments are those of `equilibrium`; axes of cases come after the axis of designs. For a design without an equilibrium, the
+    state is NaN, and so are the results.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -71,12 +71,12 @@ def gradients(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Compute gradients (a, ...) of results with respect to the numbers at `names` (a addresses), per SI unit, for constant loads.
+    """Compute gradients (a, ...) of results with respect to the numbers in SI units at `names` (a addresses), for constant loads.
 
     By the implicit function theorem, dq/dp = - K^-1 dF/dp. K is the tangent stiffness, including the inner unknowns of flexures. dF/dp is
     the derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with
-    four points. The error is about 1e-8 of the result divided by the number. Gradients are NaN without an equilibrium. Raises `DesignError`
-    for addresses that are not a single number.
+    four points. The error of a gradient is about 1e-8 times the result divided by the number. Gradients are NaN without an equilibrium.
+    Raises `DesignError` for addresses that are not a single number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()

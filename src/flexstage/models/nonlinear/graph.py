@@ -25,11 +25,12 @@ from flexstage.spatial.rotation import cross, exponential, logarithm
 class FlexureState:
     """State of a group of l flexures at a pose of b cases: frames and arms (l, b, ...) in space, configurations, and responses.
 
-    `lever` is h, from the first body's reference point to the end. `arm` is a_j, from the second body's reference point to the end. `onset`
-    is a_i, from the first body's reference point to the start. `weight` (l, b, 3) is the weight per length, divided by E I / L^3, in the
-    start frames (absent without gravity). `gap` (l, b, 6) is the distance of the end from the second body.
+    Vectors in space are `lever` (h) from the first body's reference point to the end, `arm` (a_j) from the second body's reference point to
+    the end, and `onset` (a_i) from the first body's reference point to the start. `weight` (l, b, 3) is the weight per length, divided by E
+    I / L^3, in the start frames (absent without gravity). `gap` (l, b, 6) is the gap, translation and rotation, between the end and the
+    second body.
 
-    `wrench` (l, b, 6) is the wrench of the second body on the end after the flexure's own unknowns are solved.
+    `wrench` (l, b, 6) is the wrench that the second body exerts on the flexure's end, after the flexure's own unknowns are solved.
     """
 
     frame: Array
@@ -82,7 +83,7 @@ class System:
 
 
 def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates) -> System:
-    """Assemble residual and stiffness of the stage at a pose. The unknowns of each flexure are first solved for this pose."""
+    """Assemble residual and stiffness of the stage at a pose. The inner unknowns of each flexure are first computed for the pose."""
     residual, kept = _nothing(model, pose, hold)
     tally = ResidualSum(residual, empty_sum(*residual.shape))
     bent = tuple(flexure_state(group, pose, number, loads) for number, group in enumerate(model.flexures))
@@ -309,7 +310,7 @@ def _scatter(tally: ResidualSum, links: Flexures | Hinges, force: Array, own: Ar
 def advance(model: Nonlinear, pose: Pose, bent: tuple[FlexureState, ...], step: Array, share: Array) -> tuple[Pose, Array]:
     """Advance the pose by a fraction (b,) of a step (b, n), including the inner unknowns of flexures.
 
-    Also returns the largest step (b,) of the inner unknowns.
+    The second result is the largest step (b,) of the inner unknowns.
     """
     cases = len(pose.position)
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((cases, 6))], axis=1).reshape(cases, -1, 6)

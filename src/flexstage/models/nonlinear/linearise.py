@@ -92,13 +92,13 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
 
     The cases of the state are the batch axes of the model.
 
-    - Fixed coordinates are released: the stage is free under their reactions, which keep their directions. The reaction of a rotation is
-      the moment conjugate to the component of the rotation vector. Fixed coordinates in `locked` remain fixed.
+    - Fixed coordinates are released: the stage is free under their reactions, which keep their directions. The reaction at a fixed rotation
+      is the moment conjugate to the component of the rotation vector. Fixed coordinates in `locked` remain fixed.
     - Plate fields are quasi-static, without mass.
-    - The stiffness is symmetrised. It has one contribution per link, and the contribution `geometric`.
+    - The stiffness is symmetrised. The stiffness has one contribution per link, and the contribution `geometric`.
     - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
-    - Without `inner` coordinates, each flexure is a 6x6 stiffness about its middle, in the frame of its start, as for lost motion and
-      drift. Statics are unchanged; modes are by Guyan reduction.
+    - Without `inner` coordinates, each flexure is a 6x6 stiffness about its middle, in the frame of its start. Lost motion and drift use
+      this form. Guyan reduction of the mass leaves statics unchanged and makes modes approximate.
 
     Raises `DesignError` if no case has an equilibrium, if a name in `locked` is not fixed, or if matrices need more than 8 GB.
 

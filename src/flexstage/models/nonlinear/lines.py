@@ -19,7 +19,8 @@ from flexstage.models.nonlinear.paths.critical_load import Critical
 class Line:
     """Centre line of a flexure in b cases, at s points; `shares` (s,) are fractions of the length, from 0 to 1.
 
-    `place` (b, s, 3) [m] is in the stage frame, `turn` (b, s, 3, 3) is the rotation of its sections from the nominal configuration.
+    `place` (b, s, 3) [m] contains the points in the stage frame; `turn` (b, s, 3, 3) is the rotation of the sections from their nominal
+    orientation.
     """
 
     shares: Array

@@ -31,7 +31,7 @@ _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust
 class EquilibriumSolution:
     """Poses of b cases with status, number of iterations, last residual of flexures, and load fraction `reached`.
 
-    A failed case has the pose at the fraction reached; if this is zero, its start pose.
+    A failed case has the pose at the fraction `reached`, or its start pose if `reached` is zero.
     """
 
     pose: Pose
@@ -46,7 +46,7 @@ class EquilibriumSolution:
 
 
 def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions = USUAL) -> EquilibriumSolution:
-    """Compute the equilibrium of every case under its full load. If this fails for a case, its load is applied in steps."""
+    """Compute the equilibrium of every case under its full load. If a case does not converge, its load is applied in steps."""
     cases = np.arange(len(loads.inputs))
     most = _STREAM if _all_compiled(model, hold) else _CHUNK
     chunks = [search(model, start.of(part), loads.of(part), hold.of(part), options) for part in _split(cases, most)]
@@ -138,7 +138,7 @@ class Task:
     hold: FixedCoordinates
 
     def of(self, cases: Array, pose: Pose) -> Task:
-        """Return the task for some cases, with their poses taken from `pose`, which has all cases."""
+        """Return the task for some cases. Their start poses are from `pose`, which contains the poses of all cases."""
         return Task(self.model, pose.of(cases), self.loads.of(cases), self.hold.of(cases))
 
 
@@ -183,7 +183,7 @@ class _Step:
 
 
 def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[EquilibriumSolution]:
-    """Iterate several designs of the same structure, each with its cases. Elements except flexures are evaluated together."""
+    """Iterate several designs of equal structure, each with its cases. Elements except flexures of all designs are evaluated together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
         return [_search_compiled(task, options) for task in tasks]
@@ -275,7 +275,7 @@ def motion(model: Nonlinear, step: Array, length: float) -> Array:
 
 
 def lack(model: Nonlinear, system: System) -> Array:
-    """Return the largest residual (b,) of flexures (end gaps, and forces on amplitudes over their stiffness) and of locked DOFs."""
+    """Return the largest residual (b,): end gaps of flexures, forces on their amplitudes over stiffness, and residuals of locked DOFs."""
     largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
         stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]

@@ -161,9 +161,9 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     a corotated frame. The model is valid for small strains in the flexures. Batches of designs raise `DesignError`.
 
     `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely; a part has
-    the mean temperature of its ends. The ground expands about the origin; `ground` names its material (by default as in `drift`).
-    Incompatible expansion bends the parts. Moduli are constant. With a temperature change, every material must have an expansion
-    coefficient.
+    the mean temperature of its ends. The ground expands about the origin; `ground` names its material (default: as specified in the
+    description, or the material of the parts on the ground). Incompatible expansion bends the parts. Moduli are constant. With a
+    temperature change, every material must have an expansion coefficient.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]

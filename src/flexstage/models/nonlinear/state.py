@@ -31,12 +31,12 @@ class Status(IntEnum):
 class SolverOptions(CheckedFields):
     """Options of the equilibrium solver.
 
-    An iteration ends if the step is below `step` (lengths over the flexures' length, radians, amplitudes) and the gaps are below `gap`, or
-    after `iterations`.
+    An iteration ends after `iterations`, or earlier if the step is below `step` and the residuals are below `gap`. A step contains lengths
+    over the flexure length, radians and amplitudes.
 
-    `limit` is the largest step, with translations over the stage's `reach`. Failed cases are solved with load steps, down to 2^-`halvings`
-    of the load, then by arc length with at most `arcs` steps. With `past`, the path also passes limit points: the load may decrease and
-    then increase to its whole value, as in a snap-through.
+    `limit` is the largest permitted step; translations are divided by the stage's `reach`. Failed cases are solved with load steps, down to
+    2^-`halvings` of the load, then by arc length with at most `arcs` steps. With `past`, the path also passes limit points: the load may
+    decrease and then increase to its whole value, as in a snap-through.
     """
 
     step: float = 1e-9

@@ -102,7 +102,7 @@ def _solved(matrix: Any, right: Array) -> Array:
 
 
 def negative_pivots(matrix: Any, freedoms: int) -> int:
-    """Count the negative eigenvalues of the symmetric form of [K, C^T; C, 0] with `freedoms` in K, by Sylvester's law of inertia.
+    """Count the negative eigenvalues of the symmetric form of [K, C^T; C, 0] by Sylvester's law of inertia. K has `freedoms` rows.
 
     The count is the number of negative pivots of K plus the number of negative eigenvalues of - C K^-1 C^T.
     """

@@ -57,7 +57,7 @@ def part_section(part: Part) -> tuple[float, float]:
 def part_skin(part: Part, marker: float, *, steps: int = 1) -> DrawnSurface:
     """Build the surface of a part in its link frame; a part without a shape is drawn as a cube of edge `marker` [m].
 
-    Along the part, the surface is divided into rings. Their distance is at most the part's length divided by `steps`.
+    The surface is divided into rings along the part. The distance between rings is at most the part's length divided by `steps`.
 
     >>> from flexstage.parts.rod import Rod
     >>> len(part_skin(Rod("steel", length=0.03, diameter=0.001), 0.01).triangles)
@@ -92,7 +92,7 @@ def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
 
 
 def simplification(solid: Solid) -> str:
-    """Describe the simplification with which an outline is drawn. Returns an empty string if it is drawn exactly.
+    """Describe the simplification with which an outline is drawn. Returns an empty string for an outline that is drawn exactly.
 
     >>> simplification(Block("steel", (0.1, 0.1, 0.01)))
     ''

@@ -11,7 +11,7 @@ _BIAS = 1.0
 
 
 def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
-    """Find the nearest triangle at the middle of each pixel. Returns its number (-1: none) and its depth, both with this `shape`.
+    """Find the nearest triangle at the middle of each pixel. Returns the triangle numbers (-1: none) and depths of all pixels (`shape`).
 
     `corners` (t, 3, 3) are in pixels to the right, down, and towards the viewer. A triangle without projected area is not visible.
 
@@ -58,7 +58,7 @@ def normals(corners: Array) -> Array:
 def planes(corners: Array, values: Array) -> Array:
     """Interpolate values (t, 3) at the corners of triangles linearly. Triangles without area have coefficients of zero.
 
-    Returns the coefficients (t, 3) of the coordinate to the right, of the coordinate down, and of 1.
+    Returns the coefficients (t, 3) of each triangle: value change per pixel to the right, value change per pixel down, and constant.
 
     >>> planes(np.array([[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]]), np.array([[1.0, 3.0, 5.0]])).tolist()
     [[1.0, 2.0, 1.0]]

@@ -104,7 +104,7 @@ def fan(corners: Array) -> Array:
 
 
 def face(points: Array, share: float) -> DrawnSurface:
-    """Build the surface of a convex polygon (k, 3). All its points have the same `share` (see `DrawnSurface`).
+    """Build the surface of a convex polygon (k, 3). All points of the surface have the same `share` (see `DrawnSurface`).
 
     >>> len(face(np.zeros((5, 3)), 1.0).triangles)
     3

@@ -26,7 +26,7 @@ _GROUNDED = (GROUND, GROUND)
 
 @dataclass(frozen=True)
 class Label:
-    """A name at a point of the stage [m], in the colour of its kind. It moves with the mean motion of two `bodies`."""
+    """A name at a point of the stage [m], in the colour of its kind. The name moves with the mean motion of two `bodies`."""
 
     text: str
     point: tuple[float, float, float]
@@ -48,7 +48,7 @@ class DrawnPiece:
 class Scene:
     """Pieces and labels in the stage's frame [m]; `size` is the diagonal of the box around everything.
 
-    `references` are the reference points (3,) [m] of the bodies for their twists.
+    `references` contains the point (3,) [m] of each body at which its twist is given.
     """
 
     pieces: tuple[DrawnPiece, ...]

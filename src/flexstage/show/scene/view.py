@@ -74,10 +74,10 @@ def view(side: Side) -> View:
 
 
 def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, tallest: float = 1.1, below: float = 0.0) -> Any:
-    """Create a figure of this `width` [inch] whose axes [mm] contain all points (n, 3) [m] in this view and have no frame.
+    """Create a figure with a `width` [inch] and frameless axes [mm] that contain all points (n, 3) [m] in this view.
 
-    `gap` is the margin relative to the larger extent. `tallest` is the largest ratio of height and width. `below` is free space under the
-    axes [inch].
+    `gap` is the margin relative to the larger of width and height of the points. `tallest` is the largest ratio of height and width.
+    `below` is free space under the axes [inch].
 
     >>> picture_axes(np.zeros((1, 3)), view(Side.TOP), 2.0).viewLim.intervalx.tolist()
     [-1.0, 1.0]
@@ -128,7 +128,7 @@ def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]
 
 
 def show_image(axes: Any, image: Array) -> None:
-    """Show an image (h, w, 4) of red, green, blue and opacity, 0 to 255, on the whole area of axes. Its size must be as in `pixels`."""
+    """Show an image (h, w, 4) of red, green, blue and opacity, 0 to 255, on the whole area of axes. `pixels` gives h and w."""
     extent = (*axes.get_xlim(), *axes.get_ylim())
     axes.imshow(image, extent=extent, interpolation="none", aspect="auto")
 

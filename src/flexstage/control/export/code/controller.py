@@ -122,7 +122,7 @@ def has_volts(given: Machine) -> bool:
 
 
 def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
-    """Return the state variables: states of the law, last applied strokes, last valid readings and references, plays of the inverse."""
+    """Return the state variables: states of the law, last applied strokes, last valid inputs, and plays of the inverse model."""
     model = given.compensation
     plays = () if model is None else (hysteresis_step("model", model, given.amplifiers.bias)[1],)
     taken = ("last", len(given.actuators)), ("seen", len(given.gauges)), ("wanted", len(given.names))

@@ -101,9 +101,7 @@ def error_figure(test: Simulated) -> Any:
 
 
 def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
-    """Plot rms errors (n, f) in the band for each pass or period, with lengths above angles.
-
-    Dotted lines show the non-repeating component (f,).
+    """Plot rms errors (n, f) in the band for each pass or period, lengths above angles, and as dotted lines the non-repeating error (f,).
 
     >>> len(lesson_figure(np.array([[1e-6], [1e-7]]), ["x"], ["m"], "pass").axes)
     1

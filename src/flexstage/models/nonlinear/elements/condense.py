@@ -15,7 +15,8 @@ from flexstage.models.nonlinear.elements.element import Tangent, field_system
 class FlexureResponse:
     """Response of a flexure's q + 6 unknowns: `still` (..., q + 6) with fixed end, and `moved` (..., q + 6, 6) per motion of the end.
 
-    For a flexure with weight, `moved` has three more columns: the response per change of the weight in the start frame.
+    For a flexure with weight, `moved` has three more columns: the derivatives of the response with respect to the weight in the start
+    frame.
     """
 
     still: Array
@@ -37,7 +38,7 @@ def system(tangent: Tangent) -> Array:
 def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
     """Solve for the response to end motions and to the residual; NaN if singular.
 
-    `gap` (..., 6) is the distance of the end from its body.
+    `gap` (..., 6) is the gap, translation and rotation, between the end and the second body.
     """
     matrix = system(tangent)
     size = tangent.hessian.shape[-1]
@@ -54,8 +55,8 @@ def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
 def relax_fields(law: FlexureLaw, strain: Array) -> Array:
     """Replace the amplitudes (..., b, q) of plate fields by the amplitudes of least energy for the given curvatures.
 
-    The energy is quadratic in the fields. A joint Newton iteration on fields and curvatures would overshoot in thin leaves, where
-    stretching depends on the square of their product.
+    The strain energy is quadratic in the plate fields. A joint Newton iteration on fields and curvatures would overshoot in thin leaves,
+    where stretching depends on the square of their product.
     """
     count = law.modes.shape[-1]
     if strain.shape[-1] == count:

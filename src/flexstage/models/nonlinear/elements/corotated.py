@@ -28,7 +28,7 @@ class Corotated:
       model.
     - `squares` (m,): squared angular frequencies of the inner modes.
     - `inertia` (6 p + m, 6 p + m): mass matrix of the motions of the ports, in their axes, and of the modes.
-    - `mass`, and its nominal `centre` (3,).
+    - `mass`; `centre` (3,): nominal centre of mass.
     - `share` (6 p, 3): port load per acceleration of the element.
     """
 
@@ -53,8 +53,8 @@ class Corotated:
 class PortMotion:
     """Motions (..., 6 p) of the ports in the corotated frame, and their derivatives (..., 6 p, 6 p) by the body motions.
 
-    `frame` (..., 3, 3) is the corotated frame. `turning` and `drift` (..., 3, 6 p) are the derivatives of its rotation and of the mean
-    position.
+    `frame` (..., 3, 3) is the corotated frame. `turning` and `drift` (..., 3, 6 p) are the derivatives of the rotation of this frame and of
+    the mean position of the ports.
     """
 
     motion: Array

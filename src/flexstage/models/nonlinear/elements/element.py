@@ -118,8 +118,8 @@ def tangent(law: FlexureLaw, strain: Array, moment: Array, config: Shape) -> Tan
 def mode_paths(law: FlexureLaw, config: Shape) -> tuple[Array, Array, Array]:
     """Compute displacements (..., b, n, 3, k) and rotations of the points per unit curvature amplitude, with fixed start and end force.
 
-    Also returns the integrals (..., b, 2, n, 3, 3) of R C_n R^T to each point: displacement per force and per weight (docs/nonlinear.md,
-    25).
+    The function also returns the integrals (..., b, 2, n, 3, 3) of R C_n R^T to each point: displacement per force and per weight
+    (docs/nonlinear.md, 25).
     """
     rule, modes = config.rule, law.modes[..., None, :, :, :]
     forces = _forces(rule, config.force, config.weight)

@@ -27,7 +27,7 @@ class Hinges:
     - `stiffness` (l, 6, 6).
     - `stroke`, `thrust` (l, 6, m): free deformation and wrench on the second body per input.
     - `push` (l, 6): nominal wrench on the second body.
-    - `strut` (l,): length [m] between the ends that a strut turns about, zero for a link about its centre.
+    - `strut` (l,): length [m] of a strut, which turns about both ends; zero for another link, whose stiffness is about its centre.
     - `bow` (l, 6, 6, 6): the foreshortening matrices G.
     - `locked` (c, 2): pairs of link and DOF without deformation.
 

@@ -32,9 +32,9 @@ _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Strains of l flexures by name: the `largest` strain (..., l), and `curving` b^2 k / t (..., l).
+    """Strains of l flexures by name: the `largest` strain (..., l), and the ratio `curving` (..., l) of plate bending.
 
-    In this ratio, b is the width, t the thickness and k the largest curvature.
+    `curving` is b^2 k / t with the width b, the thickness t and the largest curvature k.
 
     `stress` (..., l) is the largest von Mises stress on the faces [Pa]; `limit` (l,) the lowest stress limit of the material, NaN if
     unknown.
@@ -83,11 +83,11 @@ def strains(state: State) -> Strains:
 
 
 def law_reserve(state: State) -> tuple[float, str]:
-    """Return the remaining validity range of the link laws at a state (1 undeformed, 0 at the limit), and a clause on the limiting link.
+    """Return the remaining range of the link laws at a state (1 undeformed, 0 at the limit), and a clause that names the limit.
 
-    The strain limit of flexures is 5 %. The limit of the 6x6 stiffness of a link or superelement is a 10 % error of a law for small
-    motions: a relative rotation of its ends of 0.46 rad, or a relative displacement of 0.3 of the diagonal of the stage (for a
-    superelement, of its ports). For a spring with a length, the displacement limit is this length. Links without stiffness have no limit.
+    The strain limit of flexures is 5 %. A 6x6 stiffness of a link or superelement is limited to a 10 % error of a law for small motions.
+    The limits are a rotation of 0.46 rad between the ends, and a displacement of 0.3 of the stage's diagonal (for a superelement, of the
+    diagonal of its ports). For a spring with a length, the displacement limit is this length. Links without stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges
     used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure has a strain of {_STRAIN:.0%} there")]

@@ -45,7 +45,7 @@ _AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
 class ProportionalLoading:
     """Loads and fixed coordinates of one case that are linear in a load factor: values at factor zero, and gains per unit of the factor.
 
-    `options` are used for each equilibrium solution. Stability is evaluated in the rows `kept` of its system.
+    `options` are used for each equilibrium solution. Stability is evaluated with the rows `kept` of the system of equations.
     """
 
     model: Nonlinear
@@ -91,8 +91,8 @@ class Point:
       slope up to this point.
     - `motions`: number of independent motions that decrease the potential energy.
     - `stiffness`: product of the lowest stiffness of the stage and the stiffness of the weakest flexure between fixed ends, relative to the
-      `reference`. Where the flexure's stiffness is zero, the stage's stiffness has a pole, but the product has none. It is negative for
-      unstable states, and NaN without a reference.
+      `reference`. Where the flexure's stiffness is zero, the stage's stiffness has a pole, but the product has none. The product is
+      negative for unstable states, and NaN without a reference.
     """
 
     found: EquilibriumSolution
@@ -110,7 +110,7 @@ class Point:
 def continue_path(loading: ProportionalLoading, begin: Point, length: float, points: int) -> Iterator[Point]:
     """Generate equilibria beyond `begin`, at most `length` apart in body motion (translations over the stage size, rotations in radians).
 
-    The path ends after `points` times the length, or if there is no equilibrium at a small fraction of the length.
+    The path ends after a distance of `points` times `length`, or if there is no equilibrium at a small fraction of `length`.
     """
     gone = 0.0
     for point in march(loading, begin, length, longest=length):
@@ -123,8 +123,9 @@ def continue_path(loading: ProportionalLoading, begin: Point, length: float, poi
 def march(loading: ProportionalLoading, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
     """Generate equilibria beyond `begin`; the step length is controlled by the path curvature and the prediction errors.
 
-    A step is repeated with a shorter length if the tangent rotates, the equilibrium is off the tangent, or slope and stiffness differ from
-    their prediction. Therefore, no step skips two events. The path ends if the step is too small a fraction of the longest previous step.
+    A step is repeated with a shorter length if the tangent rotates too far, the equilibrium is too far from the tangent, or slope or
+    stiffness differs too much from its prediction. This repetition prevents a step from passing over two events. The path ends if the step
+    is too small a fraction of the longest previous step.
     """
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):
@@ -174,7 +175,8 @@ def _ahead(before: Point | None, last: Point) -> float:
 def step_along(loading: ProportionalLoading, last: Point, length: float) -> Point | None:
     """Compute the next equilibrium at a step length, or `None` without convergence (E. Riks, Int. J. Solids Structures 15, 1979).
 
-    If the path is steep, corrections keep the load factor constant. Otherwise they are normal to the step, and the factor is an unknown.
+    If the path is steep, corrections keep the load factor constant. On a flat path, corrections are normal to the step, and the factor is
+    an unknown.
     """
     scale, options, model = loading.scale, loading.options, loading.model
     whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose
@@ -229,8 +231,8 @@ def first_point(loading: ProportionalLoading, pose: Pose, factor: float) -> Poin
 def critical_point(loading: ProportionalLoading, pose: Pose, factor: float, into: Array | None) -> Point:
     """Build the first point of a path at a limit point, or at a bifurcation in the direction `into` (n,) of the branch.
 
-    The pose is close to a limit point. If it is stable, the factor increases along the path; if it has an unstable motion, the factor
-    decreases.
+    At a limit point, `pose` is only close to this point. The factor increases along the path from a stable `pose`, and decreases along the
+    path from an unstable `pose`.
     """
     point = first_point(loading, pose, factor)
     along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(loading.scale * into)
@@ -261,7 +263,7 @@ def point_at(
 def complete_paths(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
 ) -> EquilibriumSolution:
-    """Continue by arc length the cases that reached only a fraction of their load, to the whole load or to the limit point."""
+    """Continue all cases that reached only a fraction of their load by arc length, up to the whole load or to the limit point."""
     partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])

@@ -44,7 +44,7 @@ class Kind(Enum):
 class Critical:
     """Critical point: the `factor` on a load, the buckling mode `shape` (n, 6) of its `bodies`, and its `kind`.
 
-    The largest component of the shape, with translations over the stage size, is positive (of equal components, the first).
+    The sign of the shape makes its largest component positive (translations over the stage size; the first of equal components).
 
     `link` names a flexure that buckles between fixed ends; otherwise it is empty. `state` is the last stable state. `bend` is the factor of
     an earlier imperfect bifurcation, or `None`.
@@ -60,11 +60,11 @@ class Critical:
 
 
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
-    """Return the number (...) of independent motions that decrease the potential energy of each case: 0 if stable, -1 without a state.
+    """Return the number (...) of independent motions that decrease the potential energy of each case: 0 if stable, -1 without equilibrium.
 
-    It is the number of negative eigenvalues of the stage stiffness and of each flexure's own system (without its six multipliers).
+    This number is the count of negative eigenvalues of the stage stiffness and of each flexure's own system (without its six multipliers).
 
-    Fixed coordinates in `locked` remain fixed (default: all). Other fixed coordinates are released under their reactions.
+    Fixed coordinates in `locked` remain fixed (default: all). Other fixed coordinates are released, and their reactions act as loads.
     """
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     count = count_descents(state.model, whole, kept_rows(state.model, state.held, state.held if locked is None else locked))
@@ -87,20 +87,22 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
 ) -> Critical:
     """Compute the critical load: the factor on `load` at which equilibrium becomes unstable, with all other loads constant.
 
-    The other loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can be part of
-    `load`: their values then grow. The name `weight` in `load` stands for the weight of the stage; it requires the argument `weight` = 0.
-    The name `stated forces` stands for the forces and preloads of the description; it requires `stated` = 0. Other coordinates in `hold`
-    keep their values. For stability, coordinates that are not in `locked` (default: all) are free under their reactions.
+    Constant loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can also be part of
+    `load`: their values then grow with the factor. The name `weight` in `load` stands for the weight of the stage; it requires the argument
+    `weight` = 0. The name `stated forces` stands for the forces and preloads of the description; it requires `stated` = 0. Other
+    coordinates in `hold` keep their values. For stability, coordinates of `hold` that are not in `locked` (default: all) are free, and
+    their reactions act as loads.
 
     The path starts without load, or from the `known` state under the full load. Arc-length steps resolve the path's curvature and the
     change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (relative
     `tolerance` of the factor).
 
-    It raises:
+    The function raises:
 
-    - `DesignError` for a zero load, and for a stage that is unstable at the start;
-    - `NoCriticalLoadError` if no stiffness is zero up to `most` times the load;
-    - `LowerBoundError` if the path ends earlier: at the end of the range of a law (`strain.law_reserve`), or without a further equilibrium.
+    - a `DesignError` for a zero load, and for a stage that is unstable at the start;
+    - a `NoCriticalLoadError` if no stiffness is zero up to `most` times the load;
+    - a `LowerBoundError` if the path ends earlier, because a law reaches its limit (`strain.law_reserve`) or there is no further
+      equilibrium.
     """
     if not any(load.values()):
         raise refuse("load", "the load is zero", "Specify a force or moment with its size")
@@ -141,8 +143,8 @@ def _at(
 def require_continuation(start: State, end: State) -> None:
     """Raise `DesignError` if a stable state `end` is not reached from `start` by proportional change of loads and fixed coordinates.
 
-    The cause is a limit point or bifurcation on the path, an end of the path, or a path to another equilibrium. An unstable state, or a
-    state whose path starts unstable, is accepted.
+    Causes of the error are a limit point, a bifurcation or an end on the path, or a path to another equilibrium. If `end` is unstable, or
+    if its path starts unstable, there is no error.
     """
     one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
     continuation = continued(one, other)

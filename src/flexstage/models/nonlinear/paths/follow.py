@@ -54,7 +54,7 @@ def follow_to_event(
     """Follow a path to the first zero of the stiffness, or to the factor `most`; `length` is the length of the first step.
 
     Raises `LowerBoundError` if the path ends earlier, without a further equilibrium. With a `reserve`, the path also ends where the reserve
-    is zero, and well beyond an imperfect bifurcation.
+    is zero, or well beyond an imperfect bifurcation.
     """
     last, bent = begin, None
     for _ in range(_JUMPS):
@@ -100,11 +100,11 @@ def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: 
 def continued(start: Task, end: Task) -> EquilibriumSolution:
     """Compute the equilibrium of one case that is reached from `start` as loads and fixed coordinates change in proportion to `end`.
 
-    The equilibrium `end` is returned unchanged if it is near the start, or if its path starts unstable. An unstable `end` is also unchanged
-    if its path bends off earlier.
+    The equilibrium `end` is returned unchanged if it is near the start, or if its path starts unstable. An unstable `end` is also returned
+    unchanged if the path has an imperfect bifurcation.
 
-    Without such an equilibrium, `status` is `CRITICAL` for a limit point or a bifurcation on the path, or `NOT_FOLLOWED` for a path that
-    ends. `reached` is the load fraction of this point.
+    If the path does not reach the full load, `status` is `CRITICAL` (a limit point or a bifurcation) or `NOT_FOLLOWED` (the path ends).
+    `reached` is then the load fraction at the limit point, the bifurcation or the end.
     """
     model, hold = end.model, end.hold
     whole = EquilibriumSolution(end.start, np.array([Status.CONVERGED]), np.zeros(1, int), np.zeros(1), np.ones(1))

@@ -39,7 +39,8 @@ class LoadPath:
     `motions` (k,) is the number of unstable motions with a fixed drive coordinate (0: stable; -1: no equilibrium). `locked` coordinates are
     fixed along the path.
 
-    `turns` (k - 1,) are the extreme loads between adjacent points, NaN if the load is monotonic; `None` if the values were given.
+    `turns` (k - 1,) are the extreme loads between adjacent points (NaN: the load is monotonic there). `turns` is `None` if the caller
+    specified the values.
     """
 
     drive: str
@@ -79,11 +80,11 @@ def load_path(
 
     The `drive` is a fixed coordinate (`platform.y`), an actuator's stroke or force, or a wrench component.
 
-    Coordinates in `hold` are fixed at their values. Every value is solved from the nominal position; if this fails, from the nearest
-    converged value.
+    Coordinates in `hold` are fixed at their values. The iteration at every value starts at the nominal position or, if it does not
+    converge, at the state of the nearest converged value.
 
-    Stable states that are not on one continuous path along the drive are NaN, as in `equilibrium`. Raises `DesignError` for an unknown
-    drive.
+    Stable states are on one continuous path along the drive; a stable state that this path does not reach is NaN. Raises `DesignError` for
+    an unknown drive.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -111,7 +112,9 @@ def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: M
 
 
 def continue_along(begin: State, states: State, away: Array) -> State:
-    """Return states (k,) of a drive in which stable states that are not on one continuous path from `begin` are NaN.
+    """Return the states (k,) of a drive with all stable states on one continuous path from `begin`.
+
+    Stable states that this path does not reach are NaN.
 
     `away` (k,) are the distances of the drive from its start.
     """
@@ -258,11 +261,12 @@ def post_buckling_path(
 ) -> LoadPath:
     """Compute the post-buckling path: equilibria on the branch at the first bifurcation of `load`, along the factor on the load.
 
-    The first state is the last stable state before the bifurcation. The second state is in the direction of the buckling mode
-    `Critical.shape`; with `side` -1, in the opposite direction. Steps and points are as in `continuation`.
+    The first state is the last stable state before the bifurcation. From the first to the second state, the stage moves in the direction of
+    the buckling mode `Critical.shape`; with `side` -1, in the opposite direction. `step` and `points` have the same meaning as in
+    `continuation`.
 
-    Raises `DesignError` as `critical_load` does, and also for a limit point (use `continuation`), for a flexure that buckles between fixed
-    ends, and if there is no equilibrium on the branch.
+    Raises the errors of `critical_load`. Raises `DesignError` for a limit point (use `continuation`), for a flexure that buckles between
+    fixed ends, and if there is no equilibrium on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -289,8 +293,8 @@ def beyond(
 ) -> LoadPath:
     """Compute equilibria beyond a critical point, along the load factor: on the branch of a bifurcation, or past a limit point or bend.
 
-    `critical` is the result of `critical_load` for the load. `side`, `step` and `points` are as in `post_buckling_path`. Past a limit point
-    or a bend, only one side exists.
+    `critical` is the result of `critical_load` for the load. `side`, `step` and `points` have the same meaning as in `post_buckling_path`.
+    Past a limit point or a bend, the path has only one side.
 
     Raises `DesignError` for a side that does not exist, for a flexure that buckles between fixed ends, and if there is no equilibrium.
 
