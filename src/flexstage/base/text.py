@@ -15,8 +15,8 @@ _STEERING = re.compile(f"[{_CONTROLS}{_DIRECTIONS}{_UNSEEN}{_TAGS}{_NO_CHARACTER
 def printable(text: str, keep: str = "") -> str:
     r"""Escape control characters, bidirectional overrides, invisible formats, line separators and lone surrogates.
 
-    Escapes are as in Python (`\x1b`, `\u202e`). Characters that XML forbids, such as U+FFFE, are escaped too. Letters, marks and spaces of
-    any script are unchanged. Characters in `keep` are also unchanged ("\n" for text of several lines).
+    Escapes have the form of Python (`\x1b`, `\u202e`). Characters that XML forbids, such as U+FFFE, are escaped too. Letters, marks and
+    spaces of any script are unchanged. Characters in `keep` are also unchanged ("\n" for text of several lines).
 
     >>> printable("a\x1b[31m\u202e b\u00e9\n"), printable("two\nlines", keep="\n")
     ('a\\x1b[31m\\u202e bé\\n', 'two\nlines')

@@ -28,8 +28,8 @@ def mass(part: Part, material: Material | None) -> Array:
     (1 - Gamma), X Gamma]. The mass includes the material between the ends of the profile. In a rigid motion, the inertia of the solid is
     exact. A `ComplianceMatrix` part has half its mass at each end; `Joint` and `Restricted` parts have none.
 
-    For a part with m fixed-end modes, the matrix is (..., 12 + m, 12 + m). It contains the unit masses of the modes, and their coupling to
-    the motion of the ends.
+    For a part with m fixed-end modes, the matrix is (..., 12 + m, 12 + m). The matrix contains the unit masses of the modes, and the
+    coupling of the modes to the motion of the ends.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
     >>> from flexstage.parts.leaf import Leaf

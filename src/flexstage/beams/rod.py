@@ -29,7 +29,7 @@ def rod_beam(part: Rod, material: Material) -> Beam:
 
 
 def rod_modes(part: Rod, material: Material, places: Array) -> tuple[FixedEndModes, ...]:
-    """Compute the fixed-end modes of a rod: bending along y and z, and twist. `places` are stations (s,), x over the half length.
+    """Compute the fixed-end modes of a rod: bending along y and z, and twist. `places` (s,) are values of x divided by the half length.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> [fixed_end_modes.axis for fixed_end_modes in rod_modes(Rod("steel", length=0.1, diameter=0.002, inner_modes=1), steel, np.zeros(1))]

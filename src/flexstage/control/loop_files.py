@@ -59,7 +59,7 @@ def write_export(found: LoopStudy, target: Path) -> None:
 
 
 def file_findings(asked: forms.LoopSetup, exports: Sequence[Path], hardware: Path | None) -> Iterator[Finding]:
-    """Check that the code can run on an embedded processor, and that a CSV export is one path that differs from the trajectory."""
+    """Check that the code can run on an embedded processor, and that a CSV export has one path, different from the trajectory."""
     if hardware is not None and Compensation.HYSTERESIS in asked.compensate:
         yield Finding("--hardware", *NO_INVERSE)
     for target in (each for each in exports if each.suffix == ".csv"):

@@ -56,7 +56,7 @@ class NoiseBudget(InNotebook):
         """Gauges whose rounding has an effect and is not white: their readings change by less than half a step per sample.
 
         In a Gaussian series with rms changes of s steps, the rounding errors of successive samples have a correlation of about exp(-2 pi^2
-        s^2), 0.7 % for s = 1/2 (Widrow & Kollar, Quantization Noise, 2008).
+        s^2) (Widrow & Kollar, Quantization Noise, 2008). For s = 1/2, the correlation is 0.7 %.
         """
         counts = np.any(self.squares > 0.0, axis=0)
         felt = {each.channel for each, some in zip(self.sources, counts, strict=True) if some and each.kind is Kind.ROUNDING}
@@ -97,7 +97,7 @@ class NoiseBudget(InNotebook):
 
     @property
     def rounding_is_white(self) -> Annotated[bool, VIEW]:
-        """Whether rounding is white noise, as the budget assumes. If it is not, use the simulated rms."""
+        """Whether rounding is white noise, as the budget assumes. If rounding is not white, use the simulated rms."""
         return not self.slowly_rounding
 
 
@@ -110,9 +110,9 @@ def noise_budget(
     The default outputs are the platform's six motions relative to the ground. `floor` maps ground motions (`ground.x`) to one-sided
     densities. Gauss quadrature integrates floor vibration, noise of leg sensors and noise of amplifiers without lag over `band` (low, high)
     [Hz]. All other sources are white: Lyapunov's equation gives their mean squares over all frequencies (`white_system`). Between gauges
-    and hold a ground motion e^{j omega t} is sampled as e^{j omega k T}. At the samples, the response to a ground motion w is therefore y =
-    [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w. G are the stage's responses, and S_y is the response of the sampled loop to gauge
-    noise. Aliasing is exact, also above half the sampling rate. Raises `DesignError` for an unstable loop, with its growth rate, and for a
+    and hold a ground motion e^{j omega t} is sampled as e^{j omega k T}. At the samples, the response to a ground motion w is y = [G_y(j
+    omega) + S_y(e^{j omega T}) G_gap(j omega)] w. G are the stage's responses, and S_y is the response of the sampled loop to gauge noise.
+    Aliasing is exact, also above half the sampling rate. Raises `DesignError` for an unstable loop, with its growth rate, and for a
     continuous loop.
 
     >>> from flexstage.control.example import integral_loop

@@ -185,12 +185,12 @@ class Compared(InNotebook):
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
     """Compare the platform's modes in model, finite elements (optional) and test.
 
-    Shapes are compared at the outputs common to record and stage, by the modal assurance criterion (MAC, Allemang & Brown 1982), with the
-    real part of measured shapes. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to modes of the
-    model so that the total MAC of all pairs is largest. Frequency differences have a small weight, which decides between shapes that the
-    sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5. Measured modes
-    may also be paired with local modes of the model. If the permanent load is significant, the model describes the loaded stage (see
-    `load_effect`). Raises `DesignError` without a common output.
+    Shapes are compared at the outputs common to record and stage by the modal assurance criterion (MAC, Allemang & Brown 1982). For
+    measured shapes, the real part is used. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to
+    modes of the model so that the total MAC of all pairs is largest. Frequency differences have a small weight, which decides between
+    shapes that the sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5.
+    Measured modes may also be paired with local modes of the model. If the permanent load is significant, the model describes the loaded
+    stage (see `load_effect`). Raises `DesignError` without a common output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record

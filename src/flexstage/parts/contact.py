@@ -36,8 +36,8 @@ class Contact(Elastic):
 
     The first body has the seat, the second body the ball. The link's origin is the ball's centre; x points out of the seat. `material` is
     the ball's material, `counter` the seat's. `preload` is the initial compression force along x, required for a stiffness. `half_angle` is
-    the angle between a wall of the groove and x. `friction` is the friction coefficient for the slip check. The ball is massless: its mass
-    belongs to its body.
+    the angle between a wall of the groove and x. `friction` is the friction coefficient for the slip check. The contact is massless: the
+    mass of the ball belongs to its body.
 
     Ideal degrees of freedom, without friction: along y and z on a flat, along z in a groove, and all rotations.
     """

@@ -40,9 +40,9 @@ class Rate(Enum):
 class Spectrum(CheckedFields):
     """One-sided power spectral density of an input.
 
-    `density` is one number (white noise), or a table (f,) over `frequencies` (f,) in Hz. Its unit is (unit of the input)^2/Hz; with `rate`,
-    it is (unit of the velocity or acceleration)^2/Hz. A table is interpolated log-log; outside its frequencies, the density is zero.
-    Example for floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    `density` is one number (white noise), or a table (f,) over `frequencies` (f,) in Hz. The unit of `density` is (unit of the input)^2/Hz
+    or, with `rate`, (unit of the velocity or acceleration)^2/Hz. A table is interpolated log-log; outside its frequencies, the density is
+    zero. Example for floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array

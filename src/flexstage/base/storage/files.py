@@ -193,7 +193,7 @@ class Child:
         self._lock = threading.Lock()
 
     def ask(self, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
-        """Return the result of `read` for a file; raises as `Worker.call` does. After a failure, the next request starts a new worker."""
+        """Return the result of `read` for a file. Raises the errors of `Worker.call`; after a failure, the next request starts a worker."""
         with self._lock:
             known = self._worker
             if known is None or self._owner != os.getpid() or known.process.poll() is not None:

@@ -122,7 +122,7 @@ def hardware_files(
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
     """Write the controller of a loop as C99: `controller.c` and its header, both or none (see `controller_files`).
 
-    Also raises `DesignError` if a file cannot be written.
+    Raises `DesignError` in the same cases as `controller_files`, and if a file cannot be written.
 
     >>> import tempfile
     >>> from flexstage.control.example import integral_loop

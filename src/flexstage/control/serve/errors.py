@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Code(IntEnum):
-    """Codes used by the virtual controller: MS249E, section 8.7, "Error Codes", and codes of the wave generator."""
+    """Error codes of the virtual controller, from the manual MS249E (section 8.7, "Error Codes"), and codes of the wave generator."""
 
     NO_ERROR = 0
     PARAMETER_SYNTAX = 1

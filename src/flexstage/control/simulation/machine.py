@@ -60,7 +60,8 @@ class Machine:
     by `relief`), or is proportional to it. Finally, the states of plant and controller are computed for sample k + 1. The input `applied`
     is the amplifier's output minus its input: zero except at a limit.
 
-    `plant` is sampled. Its inputs named in `actuators` are strokes, all others disturbances; strokes affect no gauge in the same sample.
+    `plant` is sampled. The plant's inputs named in `actuators` are strokes, all other inputs are disturbances; strokes affect no gauge in
+    the same sample.
     """
 
     plant: System

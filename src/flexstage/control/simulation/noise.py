@@ -62,7 +62,7 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
 
 
 def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) -> Array:
-    """Generate a zero-mean Gaussian series (samples,) every `step` [s] with a one-sided density; `key` is its seed and stream.
+    """Generate a zero-mean Gaussian series (samples,) every `step` [s] with a one-sided density; `key` contains the seed and the stream.
 
     Frequencies range from 1/(2 samples step) to half the sampling rate; the spectrum outside is omitted.
 

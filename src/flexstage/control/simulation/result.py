@@ -23,11 +23,11 @@ class Simulated(InNotebook):
     """Simulated loop over time: every series has a row per sample, `times` (n,) [s].
 
     `reference`, `pose` (estimated) and `error` (n, f) [m, rad] have a column for each of `coordinates`. The true `motions` (n, p) have a
-    column for each of `channels`. Four series of strokes (n, m) [m] from the bias have a column for each of `actuators`: `command` of the
-    controller, `asked` (amplifier input, after inverse model and converter), `given` (amplifier output, after limits), and `stroke` at the
-    stage. `volts` (n, m) are NaN for a stack without voltage data. `readings` (n, g) have a column for each of `gauges`, in its unit.
-    `saturated` and `slewing` (m,) are the fractions of samples at a range limit, and at a speed limit only. `out_of_range` (g,) is the
-    fraction of samples with a reading out of range or lost; the last valid reading then replaces it.
+    column for each of `channels`. Four series (n, m) [m] contain strokes from the bias, with a column for each of `actuators`. `command` is
+    the controller's output, `asked` the amplifier input (after inverse model and converter), `given` the amplifier output (after limits),
+    and `stroke` the stroke at the stage. `volts` (n, m) are NaN for a stack without voltage data. `readings` (n, g) have a column for each
+    of `gauges`, in its unit. `saturated` and `slewing` (m,) are the fractions of samples at a range limit, and at a speed limit only.
+    `out_of_range` (g,) is the fraction of samples with a reading out of range or lost; the last valid reading then replaces it.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
@@ -103,7 +103,7 @@ def other_motions(found: Simulated, moved: str) -> dict[str, Excursion]:
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Series computed by a loop, a row per sample; names as in `Simulated`."""
+    """Series computed by a loop, with a row per sample; the fields have the same meaning as in `Simulated`."""
 
     reference: Array
     pose: Array
@@ -170,9 +170,8 @@ def _rms(values: Array) -> Array:
 class StepFigures:
     """Step response figures by coordinate (f,): `settling` time [s] until the true error stays within `band` [m, rad].
 
-    The settling time is infinite if the error does not settle. `overshoot` is the largest excess over the step, relative to the step;
-    `undershoot` is the largest motion in the opposite direction, relative to the step (both NaN without a step). `residual` [m, rad] is the
-    true error at the end of the simulation.
+    The settling time is infinite if the error does not settle. `overshoot` and `undershoot` are the largest motions beyond the step and in
+    the opposite direction, relative to the step (NaN without a step). `residual` [m, rad] is the true error at the end of the simulation.
     """
 
     coordinates: tuple[Channel, ...]

@@ -102,7 +102,7 @@ class BandwidthTrial:
     frequency: float
 
     def best(self) -> Attempt | None:
-        """Return the first attempt that meets frequency and specification, else the attempt with the best score; None without a law."""
+        """Return the first attempt that meets frequency and specification, else the attempt with the best score; None if no law exists."""
         tried: list[Attempt] = []
         for found in self._attempts(0.0):
             if found.reaches(self.frequency, self.spec):

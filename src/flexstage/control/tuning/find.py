@@ -62,12 +62,12 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
     """Optimise a controller for the objective of a specification.
 
     The variables are the control law of every loop, and the width and depth of its notches. A crossover beyond a mode is possible if
-    margins hold for all mode shifts. The search continues `known` tunings of a plant with fewer modes. Without a result, it starts from a
-    grid around the modes, unless the controller of highest bandwidth (`tune`) has its crossover beyond the modes. If the controller of
-    highest bandwidth is still better, the search also starts from this controller. The result is at least as good for the objective
-    (`merit`) as the controller of highest bandwidth, if this meets all requirements. Eigenvalues determine stability; the coupled peak of S
-    of the sampled loop, for mode shifts within the spread, determines robustness. Raises `DesignError` for an unstable open loop, for
-    contradictory requirements, and for each unmet requirement.
+    margins hold for all mode shifts. The search first continues `known` tunings of a plant with fewer modes. If they give no result, the
+    search starts from a grid around the modes, unless the controller of highest bandwidth (`tune`) has its crossover beyond the modes. If
+    the controller of highest bandwidth is still better, the search also starts from this controller. The result is at least as good for the
+    objective (`merit`) as the controller of highest bandwidth, if that controller meets all requirements. Eigenvalues determine stability;
+    the coupled peak of S of the sampled loop, for mode shifts within the spread, determines robustness. Raises `DesignError` for an
+    unstable open loop, for contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -20,9 +20,9 @@ _BAND = 0.02
 class Outcome:
     """Performance of a controller: `peaks` (v,) of S for each variant of a field, other values for each loop (k,).
 
-    `rejection` (2, k) [Hz] contains the sensitivity crossover of the model, then the lowest one for mode shifts within the spread. `noise`
-    [m] is the rms noise in regulation, `floor` [m] the contribution of the floor. `settling` [s] (2 %) and `overshoot` are the largest for
-    mode shifts within the spread; `delay_margin` [s] belongs to the model.
+    `rejection` (2, k) [Hz] contains the sensitivity crossover of the model, then the lowest crossover for mode shifts within the spread.
+    `noise` [m] is the rms noise in regulation, `floor` [m] the contribution of the floor. `settling` [s] (2 %) and `overshoot` are the
+    largest for mode shifts within the spread; `delay_margin` [s] belongs to the model.
     """
 
     peaks: Array

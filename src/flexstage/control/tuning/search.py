@@ -207,7 +207,7 @@ class Field:
     Each plant has the frequencies of the model times (1 + offset), so that its modes are at the same indices. `lines` are evenly spaced.
 
     `disturbed` (f, k, d) is the amplitude of each loop's pose due to each floor motion, `heard` (f, k) due to gauge noise. The two
-    amplitudes are weighted for sums of squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the limit of
+    amplitudes are weighted for sums of squares over frequency. `alike` maps each loop to the first equal loop. `allowed` is the limit of
     each loop's rms noise in regulation; default: no limit. `fast` [Hz] is the known crossover, for step sampling and filters.
     """
 
@@ -401,7 +401,7 @@ def resume(within: Field, known: Decentralised) -> SearchResult:
 
 
 def known_loops(within: Field, known: Decentralised) -> SearchResult:
-    """Convert the loops of a controller to a search result. Equal loops get the point of the first one."""
+    """Convert the loops of a controller to a search result. Equal loops get the point of the first loop among them."""
     count = len(within.alike)
     notches = known.notches or ((),) * count
     every = [_known_loop(within, cast("PI | PID", known.laws[first]), notches[first]) for first in within.alike]

@@ -24,7 +24,7 @@ class Shape:
     """PI, or PID filtered at `corner` [Hz], with `count` notches, sampled every `step` [s].
 
     A point contains the logarithms of k_p and k_i/k_p [1/s], for a PID also of k_d/k_p [s], and of each notch's frequency [Hz], depth and
-    damping. k_i/k_p is at least `slowest` [1/s], the rate of its zero and of the integrator's tail.
+    damping. The lower limit `slowest` [1/s] of k_i/k_p limits the rate of the zero and of the integrator's tail.
     """
 
     count: int

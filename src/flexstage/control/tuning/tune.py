@@ -98,10 +98,10 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
 
 
 def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
-    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller. Both results are None if there is none.
+    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller. Both are None if no bandwidth is possible.
 
-    The highest of the `trial_bandwidths` that succeeds is refined by bisection, up to the next higher one. Other controllers may reach
-    higher bandwidths.
+    The highest of the `trial_bandwidths` that succeeds is refined by bisection, up to the next higher trial bandwidth. Other controllers
+    may reach higher bandwidths.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -56,7 +56,7 @@ class View:
 
     @property
     def fastest(self) -> float:
-        """Highest bandwidth [Hz] to try. Its limits are hold and delay or, in a continuous loop, the plant's last mode."""
+        """Highest bandwidth [Hz] to try. The limit is due to hold and delay or, in a continuous loop, to the plant's last mode."""
         return _fastest(self.plant)
 
     @property
@@ -159,7 +159,7 @@ class Resonance:
 
 
 def resonances(seen: View, loop: int) -> tuple[Resonance, ...]:
-    """Find the significant modes of a loop, ascending; those closer than 1 % count as one.
+    """Find the significant modes of a loop, ascending; modes closer than 1 % count as one mode.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

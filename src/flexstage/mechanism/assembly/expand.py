@@ -79,7 +79,7 @@ class PlacedBody:
 
     @cached_property
     def reference(self) -> Array:
-        """Reference point (..., 3): as specified, else the centre of mass, else the centroid of its joints."""
+        """Reference point (..., 3): as specified, else the centre of mass, else the centroid of the body's joints."""
         if self.body.reference is not None:
             return self.frame.point(stack(self.body.reference))
         if self.mass is not None:
@@ -151,8 +151,8 @@ class PlacedSuperelement:
     def welds(self) -> Iterator[PlacedLink]:
         """Yield joints from the body of the first port to the body of each other port, for the ideal model.
 
-        A joint locks all degrees of freedom that the link does not specify as free; only a link with two ports may specify them. Ports on
-        the body of the first port have no joint.
+        A joint is rigid, except for degrees of freedom that a link with two ports specifies as free. Ports on the body of the first port
+        have no joint.
         """
         first, *others = self.ports
         free = self.link.free or ()

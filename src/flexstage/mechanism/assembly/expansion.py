@@ -38,7 +38,8 @@ class Ground:
 class Expansion:
     """Expansion coefficients [1/K] of the `bodies`, including the ground, and of the `parts` that have a length.
 
-    `taken` is the assumed material of each body and its source (solids or links). `ground` is the material of the ground.
+    `taken` is the assumed material of each body, and the source of this assumption (solids or links). `ground` is the material of the
+    ground.
     """
 
     bodies: Mapping[str, Number]

@@ -390,25 +390,25 @@ class UnionNode(Node):
         return {"oneOf": schemas} if len(schemas) > 1 else schemas[0]
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Yield the members by the node of the value's alternative."""
+        """Yield the members of the value's alternative."""
         return self.option(value).members(value)
 
     def child(self, value: Any, name: str) -> Node:
-        """Return the node of a member by the node of the value's alternative."""
+        """Return the node of a member of the value's alternative."""
         return self.option(value).child(value, name)
 
     def key(self, value: Any, name: str) -> str:
-        """Return the file key of a member by the node of the value's alternative."""
+        """Return the file key of a member of the value's alternative."""
         return self.option(value).key(value, name)
 
     def field_called(self, value: Any, key: str) -> str:
-        """Return the field for a key of a file by the node of the value's alternative."""
+        """Return the field of the value's alternative for a key of a file."""
         return self.option(value).field_called(value, key)
 
 
 @dataclass(frozen=True)
 class FieldUnionNode(UnionNode):
-    """Object of one of several classes, identified by a field in the table. A table without such a field has the first class."""
+    """Object of one of several classes, identified by a field in the table; a table without such a field has the first class."""
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """Return an object of the alternative whose field is in the table."""

@@ -197,7 +197,7 @@ class Node:
 
 @dataclass(frozen=True)
 class NumberNode(Node):
-    """Number of a quantity, within a bound. `zero`: zero is written without a unit, as in a matrix."""
+    """Number of a quantity, within a bound. If `zero`, the value zero is written without a unit, e.g. in a matrix."""
 
     quantity: Quantity
     bound: Bound | None = None

@@ -91,7 +91,7 @@ class State(InNotebook):
         return np.concatenate([self.displacement(place), self.rotation(place)], axis=-1)
 
     def wrench(self, link: str) -> Array:
-        """Return the wrench (..., 6) [N, N m] of the second body on a flexure's end, about the end, in the frame of the flexure's start."""
+        """Return the wrench (..., 6) [N, N m] that the second body exerts on a flexure's end, about this end, in the frame of its start."""
         for number, group in enumerate(self.model.flexures):
             if link in group.names:
                 place = group.names.index(link)
@@ -204,7 +204,7 @@ def equilibria(
     stated: Number = 1.0,
     options: SolverOptions = USUAL,
 ) -> list[State]:
-    """Compute the states of several designs of the same structure under the same loads, each as `equilibrium` does.
+    """Compute the states of several designs of the same structure under the same loads, by the method of `equilibrium`.
 
     `hold` applies to all designs, or has one entry per design.
 
@@ -284,8 +284,8 @@ def corrected(
 ) -> State:
     """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the difference.
 
-    One step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. The loads and fixed coordinates must
-    be the same as for `start`. Cases without a state in `start` remain without a state.
+    One Newton step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. The loads and fixed coordinates
+    must be the same as for `start`. Cases without a state in `start` remain without a state.
     """
     request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))

@@ -328,7 +328,7 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[FlexureState, ...], step: 
 
 
 def end_displacement(model: Nonlinear, bent: tuple[FlexureState, ...], step: Array) -> Array:
-    """Return the largest relative motion (b,) of flexure ends in a step (b, n): translations over the length, rotations in radians."""
+    """Return the largest relative motion (b,) of flexure ends in a step (b, n): translations over flexure length, rotations in radians."""
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((len(step), 6))], axis=1).reshape(len(step), -1, 6)
     largest = [np.zeros(len(step))]
     for group, each in zip(model.flexures, bent, strict=True):

@@ -89,7 +89,7 @@ class Nonlinear(InNotebook):
 
     @cached_property
     def size(self) -> float:
-        """Length scale of translations [m]: the longest flexure, or the largest arm."""
+        """Length scale of translations [m]: the length of the longest flexure or, without flexures, the largest arm."""
         lengths = [float(np.max(group.law.length)) for group in self.flexures]
         places = (self.hinges.arm_first, self.hinges.arm_second, *(each.place - each.place[0] for each in self.elements))
         arms = [np.max(np.abs(each), initial=0.0) for each in places]

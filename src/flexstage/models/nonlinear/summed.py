@@ -21,7 +21,7 @@ class Sum(Protocol):
         """Add a block (b, r, c)."""
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add blocks (l, b, r, c), each by its first row and column (l,)."""
+        """Add blocks (l, b, r, c), each at its first row and column (l,)."""
 
     def total(self, kept: Array) -> Array | tuple[Any, ...]:
         """Return the matrix with only the rows and columns `kept`: (b, n, n), or sparse matrices."""
@@ -39,7 +39,7 @@ class Dense:
         self._whole[:, rows, columns] += block
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add blocks (l, b, r, c), each by its first row and column (l,)."""
+        """Add blocks (l, b, r, c), each at its first row and column (l,)."""
         high, wide = blocks.shape[-2:]
         for row, column, block in zip(rows, columns, blocks, strict=True):
             self._whole[:, row : row + high, column : column + wide] += block
@@ -62,7 +62,7 @@ class Blocks:
         self.spread(np.array([rows.start]), np.array([columns.start]), np.broadcast_to(block, shape))
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add blocks (l, b, r, c), each by its first row and column (l,)."""
+        """Add blocks (l, b, r, c), each at its first row and column (l,)."""
         self._found.append((rows, columns, blocks))
 
     def total(self, kept: Array) -> tuple[Any, ...]:
@@ -120,7 +120,7 @@ def nearest_descent(matrix: Any, scale: Array) -> tuple[float, Array]:
 
     Rows and columns of K are divided by `scale` (n,).
 
-    Lanczos' method on the inverse gives the two eigenvalues nearest to zero; the negative one, if any, is returned.
+    Lanczos' method on the inverse gives the two eigenvalues nearest to zero; the negative eigenvalue, if any, is returned.
     """
     count = len(scale)
     whole = np.concatenate([scale, np.ones(matrix.shape[0] - count)])

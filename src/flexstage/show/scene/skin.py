@@ -31,8 +31,8 @@ ROUND = slice(0)
 class DrawnSurface:
     """A surface: `points` (n, 3) [m], `triangles` (t, 3) and sharp `edges` (e, 2) as indices of points.
 
-    Corners of triangles are counter-clockwise as seen from outside. If the surface connects two bodies, the motion of point k is the sum of
-    the motions of both bodies, with weights 1 - `share`[k] for the first body and `share`[k] for the second body.
+    Corners of triangles are counter-clockwise as seen from outside. If the surface connects two bodies, point k moves by the weighted sum
+    of both motions: 1 - `share`[k] is the weight of the first body, `share`[k] the weight of the second body.
     """
 
     points: Array

@@ -16,7 +16,7 @@ from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 
 def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]:
-    """Generate `double <name>_move(double *state, int axis, double value)`, which advances one axis, and its initial state at the bias.
+    """Generate `double <name>_move(double *state, int axis, double value)`, which advances one axis, and the initial state at the bias.
 
     Raises `DesignError` for a model without a C form.
 

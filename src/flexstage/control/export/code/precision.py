@@ -29,7 +29,7 @@ class Precision(Enum):
 
     @property
     def digits(self) -> int:
-        """Number of binary digits after the leading one."""
+        """Number of binary digits after the leading digit."""
         return int(np.finfo(self.value).nmant)
 
     @property

@@ -23,7 +23,7 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
 
     A communication step of the importer runs all samples of the program within the step. Samples are at multiples of the program's step
     after the start time. All samples use the inputs set before the communication step. Equal programs and compilers give identical bytes.
-    With `sources_only`, the unit contains no library. For a library, raises `DesignError` without a compiler, or if FMI 2.0 has no name for
+    With `sources_only`, the unit contains no library; otherwise, raises `DesignError` if there is no compiler or FMI 2.0 has no name for
     this type of computer.
 
     >>> from flexstage.control.export.code.controller import controller_code

@@ -24,8 +24,8 @@ class Corotated:
     """Superelement: body numbers (p,) of its p ports, nominal arms (p, 3) from the bodies, port axes (p, 3, 3), in stage axes.
 
     - `place` (p, 3): nominal positions of the ports.
-    - `relative` (6 (p - 1), 6 p): from port motions in stage axes to the strains of `stiffness` (6 (p - 1), 6 (p - 1)), as in the linear
-      model.
+    - `relative` (6 (p - 1), 6 p): matrix from port motions in stage axes to the strains of `stiffness` (6 (p - 1), 6 (p - 1)), as in the
+      linear model.
     - `squares` (m,): squared angular frequencies of the inner modes.
     - `inertia` (6 p + m, 6 p + m): mass matrix of the motions of the ports, in their axes, and of the modes.
     - `mass`; `centre` (3,): nominal centre of mass.

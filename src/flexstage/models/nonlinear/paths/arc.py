@@ -108,7 +108,7 @@ class Point:
 
 
 def continue_path(loading: ProportionalLoading, begin: Point, length: float, points: int) -> Iterator[Point]:
-    """Generate equilibria beyond `begin`, at most `length` apart in body motion (translations over the stage size, rotations in radians).
+    """Generate equilibria beyond `begin`, at most `length` apart in motion (translations over the flexure length, rotations in radians).
 
     The path ends after a distance of `points` times `length`, or if there is no equilibrium at a small fraction of `length`.
     """

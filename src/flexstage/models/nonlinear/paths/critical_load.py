@@ -44,7 +44,8 @@ class Kind(Enum):
 class Critical:
     """Critical point: the `factor` on a load, the buckling mode `shape` (n, 6) of its `bodies`, and its `kind`.
 
-    The sign of the shape makes its largest component positive (translations over the stage size; the first of equal components).
+    The sign of the shape makes its largest component positive (of equal components, the first). The largest component is found with
+    translations divided by the longest flexure length.
 
     `link` names a flexure that buckles between fixed ends; otherwise it is empty. `state` is the last stable state. `bend` is the factor of
     an earlier imperfect bifurcation, or `None`.

@@ -148,7 +148,7 @@ def equilibria_along(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> State:
-    """Compute the states (k,) of a load path as `load_path` does, without the evaluation of stability and events.
+    """Compute the states (k,) of a load path like `load_path`, but without stability, events and a check of continuity.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
