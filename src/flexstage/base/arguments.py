@@ -69,7 +69,7 @@ class MismatchError(Exception):
 
 
 class CheckedFields:
-    """Base of frozen dataclasses that convert or refuse their field values at construction."""
+    """Base class of frozen dataclasses that convert or refuse their field values at construction."""
 
     __slots__ = ()
     frozen_values: ClassVar[bool] = False

@@ -54,7 +54,7 @@ class Register(Generic[Entry]):
 def origin(module: str) -> str:
     """Return name and version of the installed package that contains a module; an empty string for flexstage and scripts.
 
-    Digests include this string, because results of a class may change with its package's version.
+    Digests include the name and version, because results of a class may change with its package's version.
 
     >>> origin("flexstage.parts.leaf")
     ''

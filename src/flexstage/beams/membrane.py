@@ -21,7 +21,7 @@ from flexstage.parts.stated import point_masses
 
 
 def membrane_stiffness(part: Membrane, material: Material) -> Array:
-    """Compute the stiffness (..., 6, 6) of the hub relative to the rim about its centre.
+    """Compute the stiffness (..., 6, 6) of the hub relative to the rim, about the membrane's centre.
 
     The stiffness is valid for small displacements: beyond about half the thickness along x, a membrane stretches and becomes stiffer. Plate
     shear is neglected.

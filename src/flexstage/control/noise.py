@@ -205,7 +205,7 @@ def _source(name: str) -> Source:
 
 
 def disturbance_response(closed: Loop, inputs: tuple[str, ...], outputs: tuple[str, ...], frequencies: Array) -> Array:
-    """Compute the response (f, p, m) of a loop to continuous disturbances of its stage: `ground.x` ... or an actuator's stroke.
+    """Compute the response (f, p, m) of a loop to continuous disturbances of its stage: ground motion (`ground.x`) or strokes of actuators.
 
     At the samples, the response is G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega) (see `noise_budget`). `frequencies` (f,) [Hz] may
     exceed half the sampling rate.

@@ -35,9 +35,9 @@ class Contact(Elastic):
     """Ball of a `radius` pressed on its `seat`: a flat normal to x, or a V groove along z with x as bisector.
 
     The first body has the seat, the second body the ball. The link's origin is the ball's centre; x points out of the seat. `material` is
-    the ball's material, `counter` the seat's. `preload` is the initial compression force along x, required for a stiffness. `half_angle` is
-    the angle between a wall of the groove and x. `friction` is the friction coefficient for the slip check. The contact is massless: the
-    mass of the ball belongs to its body.
+    the ball's material, `counter` the seat's. `preload` is the initial compression force along x; the stiffness requires a preload.
+    `half_angle` is the angle between a wall of the groove and x. `friction` is the friction coefficient for the slip check. The contact is
+    massless: the mass of the ball belongs to its body.
 
     Ideal degrees of freedom, without friction: along y and z on a flat, along z in a groove, and all rotations.
     """
@@ -129,7 +129,7 @@ def hertz(part: Contact, material: Material) -> Hertz:
 
 
 def contact_stiffness(part: Contact, material: Material) -> Array:
-    """Compute the stiffness (..., 6, 6) about the ball's centre: the sum over its contacts, without contact moments.
+    """Compute the stiffness (..., 6, 6) about the ball's centre: the sum over all contacts, without contact moments.
 
     On a flat, rolling and spinning about the contact point are free. About the ball's centre, the stiffness has terms k_t R and k_t R^2.
 

@@ -60,8 +60,8 @@ class Superelement(Elastic):
     a frequency; by default, it keeps all modes.
 
     `mass`, `centre` of mass and `inertia` about this centre, in the part's axes, are compared with the matrices. `loss_factor` is the loss
-    factor of the stiffness. `reflected`: use the mirror image of the file's part in its x-z plane; `ports`, `mass`, `centre` and `inertia`
-    describe the mirror image. The model is linear: small motions, no buckling, unknown thermal expansion.
+    factor of the stiffness. If `reflected`, the part is the mirror image of the file's part in the x-z plane; `ports`, `mass`, `centre` and
+    `inertia` describe the mirror image. The model is linear: small motions, no buckling, unknown thermal expansion.
     """
 
     kind: ClassVar[str] = "superelement"
@@ -102,10 +102,10 @@ class Superelement(Elastic):
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Names of its files, in the order of the digest."""
+        """Names of the superelement's files, in the order of the digest."""
         return (self.file,) if self.file else tuple(each for each in (self.stiffness_file, self.mass_file, self.damping_file) if each)
 
     @property
     def order(self) -> tuple[str, ...]:
-        """Names of its ports in the order of their rows in the file."""
+        """Names of the superelement's ports in the order of their rows in the file."""
         return tuple(sorted(self.ports, key=lambda name: self.ports[name].row))

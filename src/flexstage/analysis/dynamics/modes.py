@@ -133,13 +133,13 @@ class Modes(Result):
 
     @property
     def platform_frequencies(self) -> Array:
-        """Platform frequencies (..., 6) [Hz], ascending; NaN where a design has fewer."""
+        """Platform frequencies (..., 6) [Hz], ascending; NaN if a design has fewer platform modes."""
         ordered = np.sort(np.where(self.chosen, self.frequencies, np.nan), axis=-1)
         return ordered[..., : int(np.max(np.sum(self.chosen, axis=-1), initial=0))]
 
     @property
     def highest(self) -> float:
-        """Highest platform frequency below the limit, for the first design [Hz]; if none is below the limit, the lowest."""
+        """Highest platform frequency below the limit, for the first design [Hz]; if none is below it, the lowest one."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 

@@ -65,8 +65,8 @@ def require_regular(path: Path) -> None:
 class HdfArray:
     """Array of an HDF5 file: path, shape, and kind of numbers (numpy's letter, `t` for strings, `r` for references).
 
-    `size` is the number of bytes per number. `columns` are the kinds by column name for a table. `attributes`, `texts` and `references`
-    (paths of referenced objects) are the other contents of the array.
+    `size` is the number of bytes per number. For a table, `columns` maps column names to kinds of numbers. `attributes`, `texts` and
+    `references` (paths of referenced objects) are the other contents of the array.
     """
 
     name: str

@@ -97,7 +97,7 @@ class PendingFile:
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Generator[Path]:
-    """Provide a temporary path for writing. At the end of the block, the file is renamed to `path`; on failure, it is removed.
+    """Provide a temporary path for writing. At the end of the block, the temporary file is renamed to `path`, or removed after a failure.
 
     Raises `DesignError` for a missing folder, a write-protected file, a path that is not a regular file, or a disk error.
 

@@ -47,7 +47,7 @@ def loop_tables(found: LoopStudy) -> list[Table | None]:
 def short_tables(found: LoopStudy) -> list[Table | str | None]:
     """Tabulate loop, bandwidth, margins, time responses, positioning noise and hysteresis, without notes.
 
-    The loop table keeps the note on the tuning, which names missed limits, and for an unstable loop all notes.
+    The loop table keeps the tuning note, which names missed limits. For an unstable loop, the loop table keeps all notes.
     """
     margins, noise = margin_tables(replace(found, disk_margin=None)), error_tables(replace(found, static_errors=None))
     parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), *noise]

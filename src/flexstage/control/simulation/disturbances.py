@@ -24,7 +24,7 @@ class ExternalInputs:
 def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> ExternalInputs:
     """Arrange named series (n,) of `count` samples in the order of the loop's inputs; missing series are zero.
 
-    Names are the plant's further inputs (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises `DesignError` for
+    Names are other inputs of the plant (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises `DesignError` for
     unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a lost reading.
 
     >>> from flexstage.control.example import integral_loop

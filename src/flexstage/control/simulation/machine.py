@@ -25,7 +25,7 @@ class Amplifiers:
     """Amplifier model with one number per actuator (m,); strokes are free strokes relative to the bias.
 
     The command is rounded to the converter's `step` [m] (0: no rounding). The rounded command is limited to the range from `low` to `high`
-    [m] and to the rate `slew` [m/s]. The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without data).
+    [m] and to the rate `slew` [m/s]. The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without voltage data).
     """
 
     low: Array

@@ -186,8 +186,8 @@ class StepFigures:
 def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0) -> StepFigures:
     """Compute settling time and overshoot of a simulated step at `start` [s].
 
-    The band is the fraction `share` of each coordinate's step; coordinates without a step use the largest step of their unit. All values
-    follow from the error of the true pose.
+    The band is the fraction `share` of each coordinate's step or, without a step, of the largest step in the same unit. All values follow
+    from the error of the true pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

@@ -45,7 +45,7 @@ class RunningLoop:
     def advance(self, wanted: Array, held: Array | None = None) -> Series:
         """Simulate a sample for each row of the references `wanted` (n, f); `held` (f,) marks the servo-controlled axes, default all.
 
-        Raises `DesignError` for diverging numbers, and resets the loop.
+        If numbers diverge, resets the loop and raises `DesignError`.
         """
         linear, row, ends, reach, rows = self._linear, self._row, self._ends, self.machine.reach, np.empty((len(wanted), self._ends[-1]))
         x, stroke, z, reference, pose, applied, command, asked, gives, reading = np.split(row, ends[:-1])

@@ -335,7 +335,7 @@ def _controller(within: Field, found: SearchResult) -> Decentralised:
 
 
 def prefilters(within: Field, found: SearchResult) -> tuple[Prefilter, ...]:
-    """Select a prefilter per loop from a grid: least overshoot over all mode shifts (2 % or less are equal), then fastest settling."""
+    """Select a prefilter per loop from a grid: least overshoot over all mode shifts (values up to 2 % are equal), then fastest settling."""
     loops, chosen = one_loops(within, found), dict[int, Prefilter]()
     for loop, first in enumerate(within.alike):
         chosen[loop] = chosen[first] if first in chosen else _soonest(loops[loop])

@@ -77,7 +77,7 @@ class OneLoop:
 
     @cached_property
     def following(self) -> Array:
-        """Complementary sensitivity T (w, h) at the lines of steps, 1 at zero frequency."""
+        """Complementary sensitivity T (w, h) at `lines`; T is 1 at zero frequency."""
         loops = self.slow * self.shape.value(self.point, self.lines[1:])
         return np.concatenate([np.ones((len(loops), 1)), loops / (1.0 + loops)], axis=-1)
 
@@ -228,7 +228,7 @@ def _is_promising(costs: list[float], tries: int, enough: float) -> bool:
 
 
 def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:
-    """Return half the sum of squares of residuals (r,) with derivatives (p, r), its gradient and its curvature."""
+    """Return half the sum of squares of residuals (r,) with derivatives (p, r), and the gradient and curvature of this sum."""
     cost, gradient, curvature = 0.0, np.zeros(size), np.zeros((size, size))
     for values, changes in terms:
         cost += 0.5 * float(values @ values)

@@ -423,7 +423,7 @@ def _known_loop(within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tup
 
 
 def tighten(within: Field, found: SearchResult) -> SearchResult:
-    """Optimise all loops at once, from the result in the same or a less strict field."""
+    """Optimise all loops at once, starting from a result in the same or a less strict field."""
     return _together(replace(within, allowed=found.noises), found)
 
 

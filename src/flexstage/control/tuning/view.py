@@ -37,7 +37,7 @@ class View:
     """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
 
     `responses` (v, f, k, n) are from strokes to the loops' poses at `frequencies` (f,) [Hz], only for the first v offsets, which are within
-    the spread. `modes` [Hz] and `ratios` belong to the plant's modes.
+    the spread. `modes` [Hz] and `ratios` are the frequencies and damping ratios of the plant's modes.
     """
 
     plant: Plant
@@ -96,8 +96,8 @@ class View:
 def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:
     """Compute the `View` of a plant for its loops; `offsets` are relative mode shifts, in ascending magnitude.
 
-    Frequency responses are computed only for offsets within the `spread`. A relative shift s of all modes is equivalent to a time scale:
-    the plant is sampled every (1 + s) T instead of T.
+    Frequency responses are computed only for offsets within the `spread`. A relative shift s of all modes is equivalent to another time
+    scale: the plant is sampled every (1 + s) T instead of T.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -21,7 +21,7 @@ class Misalignment(Description):
     """Misalignment of an instance in its own frame: `shift` of its origin, and `rotation` vector about its axes.
 
     The direction of the rotation vector is the axis, its length the angle. All bodies and links of a unit move together, including the
-    hinge to the platform and its seat. The stage is manufactured in this position, so the misalignment causes no forces.
+    hinge to the platform and its seat. The stage is manufactured in the misaligned position, so the misalignment causes no forces.
     """
 
     shift: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)

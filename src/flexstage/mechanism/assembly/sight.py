@@ -57,7 +57,7 @@ class PlacedGauge:
 
 @dataclass(frozen=True, eq=False)
 class PlacedStop:
-    """Stop of the expanded stage: `low` and `high` (...) [m] limit the motion of its `sight`; infinite on an open side."""
+    """Stop of the expanded stage: `low` and `high` (...) [m] limit the motion of its `sight`; an open side has an infinite limit."""
 
     sight: Sight
     low: Array

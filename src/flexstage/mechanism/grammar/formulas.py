@@ -247,7 +247,7 @@ def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
 
 
 def spelling_findings(name: str) -> Iterator[Finding]:
-    """Yield errors in the name of a number: only letters, digits and _ are allowed, and no function name.
+    """Yield errors in the name of a number: only letters, digits and _ are allowed, and function names are reserved.
 
     >>> print(*spelling_findings("sin"))
     numbers.sin: sin is reserved in formulas. Rename the number, e.g. sin_1.

@@ -61,9 +61,9 @@ class EnoughError(Exception):
 class Reader:
     """State while a file is read: errors, tags by address, and sources of catalogue entries.
 
-    `tagged`: tables may have tags; otherwise `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: no formulas
-    allowed). `formulas` contains the formulas that were read, by address. `bounds` contains the errors for numbers outside their bounds;
-    they are reported when the description is checked.
+    If `tagged`, tables may have tags; otherwise, `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: no
+    formulas allowed). `formulas` contains the formulas that were read, by address. `bounds` contains the errors for numbers outside their
+    bounds; they are reported when the description is checked.
     """
 
     tagged: bool = True

@@ -54,7 +54,7 @@ class Flexures:
 
 @dataclass(frozen=True, eq=False)
 class LoadPoints:
-    """Points of d constant-direction loads: body numbers (d,), and nominal arms (d, 3) from the bodies' reference points."""
+    """Points of d loads of constant direction: body numbers (d,), and nominal arms (d, 3) from the bodies' reference points."""
 
     body: Array
     arm: Array

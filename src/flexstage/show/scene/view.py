@@ -41,7 +41,7 @@ _DOTS = 160.0
 
 
 class Side(Enum):
-    """Side from which the stage is seen. The value is the direction towards the viewer, and the upward direction of the picture."""
+    """Side from which the stage is seen. The value contains the direction towards the viewer, and the upward direction of the picture."""
 
     TOP = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
     FRONT = ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0))

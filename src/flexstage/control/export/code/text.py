@@ -49,7 +49,7 @@ def indent(lines: Iterable[str], depth: int = 1) -> list[str]:
 
 
 def comment(text: str) -> list[str]:
-    r"""Format a wrapped comment. A comment end inside the text is split, invisible characters are escaped.
+    r"""Format a wrapped comment. A comment end inside the text is split, and invisible characters are escaped.
 
     >>> comment("low is */ fine"), comment("name \u202e")
     (['/* low is * / fine */'], ['/* name \\u202e */'])
@@ -77,7 +77,7 @@ def wrap(line: str, further: str = "    ") -> list[str]:
 
 
 def identifier(text: str) -> str:
-    """Convert a name to an identifier for functions, types, files and an FMU: letters, digits and underscores, first a letter.
+    """Convert a name to an identifier for functions, types, files and an FMU: letters, digits and underscores, beginning with a letter.
 
     Reserved names (C keywords, system headers, FMI names) get the prefix `stage_`.
 

@@ -22,7 +22,7 @@ _NEAR = 4.0
 
 
 def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) -> Any:
-    """Plot open loops, each with the others closed (Bode plot): magnitude, phase, lines at 1 and -180 degrees, modes, margins `spots`."""
+    """Plot open loops, each with the others closed (Bode plot): magnitude, phase, modes, margins (`spots`), lines at 1 and -180 degrees."""
     with style_context():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])
@@ -94,7 +94,7 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
 
 
 def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
-    """Plot |S| of every loop from measured responses, with its 95 % interval, and |S| of identified and design model."""
+    """Plot |S| of every loop: from measured responses with the 95 % interval, from the identified model, and from the design model."""
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
     with style_context():

@@ -59,7 +59,7 @@ class Tangent:
 
 
 def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = None) -> Shape:
-    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is the weight per length, over E I / L^3."""
+    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is the weight per length, divided by E I / L^3."""
     rule = gauss(law.modes.shape[-3])
     count = law.modes.shape[-1]
     curvature = _apply(law.modes, strain[..., :count])

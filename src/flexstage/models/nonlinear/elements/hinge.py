@@ -103,7 +103,7 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """Compute the internal wrenches (..., l, b, 6): elastic minus inputs (b, m) minus preloads, plus `held`, the forces of locked DOFs."""
+    """Compute internal wrenches (..., l, b, 6): elastic wrenches minus inputs (b, m) and preloads, plus `held` forces of locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 

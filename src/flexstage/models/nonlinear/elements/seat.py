@@ -18,7 +18,7 @@ _Links = TypeVar("_Links", Flexures, Hinges)
 
 
 def seat(model: Nonlinear, links: Collection[str], place: Array) -> Nonlinear:
-    """Build a model in which `links` are connected to a body `seat` instead of the ground; its reference point is `place` (3,).
+    """Build a model in which `links` are connected to a body `seat` instead of the ground. The seat's reference point is `place` (3,).
 
     The seat is free: the caller must fix its six coordinates. Raises `DesignError` if none of the links is connected to the ground.
 

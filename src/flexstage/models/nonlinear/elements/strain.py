@@ -48,7 +48,7 @@ class Strains:
 
 
 def strains(state: State) -> Strains:
-    """Compute strains at the ends and the points of every flexure, for its thinnest section.
+    """Compute strains at the ends and the integration points of every flexure, for its thinnest section.
 
     The strain is |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. At a clamped
     end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with this strain. Stress includes stretch, bending about both

@@ -95,7 +95,7 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     their reactions act as loads.
 
     The path starts without load, or from the `known` state under the full load. Arc-length steps resolve the path's curvature and the
-    change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (relative
+    change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (to a relative
     `tolerance` of the factor).
 
     The function raises:
