@@ -55,9 +55,9 @@ class Superelement(Elastic):
     damping). The digest identifies the version of the matrices, and caches use the digest instead of the matrices. A relative path is
     relative to the design file.
 
-    The internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA J. 6, 1313, 1968). The reduction to modes
-    preserves statics and total mass. The model keeps a number of `modes` (0: Guyan condensation, AIAA J. 3, 380, 1965) or the modes `below`
-    a frequency; by default, it keeps all modes.
+    The internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA Journal 6, 1313, 1968). The reduction to modes
+    preserves statics and total mass. The model keeps a number of `modes` (0: Guyan condensation, AIAA Journal 3, 380, 1965) or the modes
+    `below` a frequency; by default, it keeps all modes.
 
     `mass`, `centre` of mass and `inertia` about this centre, in the part's axes, are compared with the matrices. `loss_factor` is the loss
     factor of the stiffness. If `reflected`, the part is the mirror image of the file's part in the x-z plane; `ports`, `mass`, `centre` and

@@ -157,7 +157,7 @@ class Modes(Result):
 
 @check_arguments
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
-    """Compute the undamped natural modes of a model (Eq. 28 of Shin & Moon).
+    """Compute the undamped natural modes of a model (Shin & Moon, equation 28).
 
     A platform mode is a mode at which the sum of the modal compliances reaches a tenth of the platform's static compliance in one more
     direction (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that

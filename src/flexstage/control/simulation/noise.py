@@ -80,7 +80,7 @@ def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Ar
 
     The transform of the series is X(f) = W(f) (S(f) / 2 T)^(1/2), with the transform W of white numbers of unit variance. The series is
     Gaussian and stationary, with the given density at its frequencies. Discarding half the series removes the periodicity (Shinozuka and
-    Deodatis, Appl. Mech. Rev. 44, 1991).
+    Deodatis, Applied Mechanics Reviews 44, 1991).
 
     >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # density 2 T: unit variance, the unchanged white noise
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))

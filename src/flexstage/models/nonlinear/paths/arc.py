@@ -173,7 +173,7 @@ def _ahead(before: Point | None, last: Point) -> float:
 
 
 def step_along(loading: ProportionalLoading, last: Point, length: float) -> Point | None:
-    """Compute the next equilibrium at a step length, or `None` without convergence (E. Riks, Int. J. Solids Structures 15, 1979).
+    """Compute the next equilibrium at a step length, or `None` without convergence (Riks 1979, see `continuation`).
 
     If the path is steep, corrections keep the load factor constant. On a flat path, corrections are normal to the step, and the factor is
     an unknown.

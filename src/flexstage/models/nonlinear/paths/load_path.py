@@ -228,7 +228,7 @@ def continuation(
     path. The path has the length `points` times `step`, and ends earlier if there is no further equilibrium. Coordinates in `hold` are
     fixed at their values.
 
-    The method is by E. Riks (Int. J. Solids Structures 15, 1979), with corrections normal to the first step.
+    The method is by Riks (Int J Solids Structures 15, 1979), with corrections normal to the first step.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
