@@ -71,7 +71,7 @@ class StageResults:
         return displaced.nonlinear(self.mechanism)
 
     def along(self, name: str, at: float | None = None) -> strokes.Points:
-        """Stroke characteristics along a path of the design, or at one value of its drive."""
+        """Stroke characteristics along a path of the design, or at one value `at` of the driven coordinate."""
         if (name, at) not in self._points:
             result = course(self.mechanism, name)
             self._points[name, at] = result.points(self.nonlinear, None if at is None else np.array([at]))
@@ -89,7 +89,7 @@ class StageResults:
             bench._points[name, at] = each  # noqa: SLF001
 
     def one(self, place: int, share: float) -> StageResults:
-        """Bench of one design of a batch, with a fraction `share` of its imaginary parts added. Recent benches are cached."""
+        """Results of one design of a batch, with `share` times its imaginary parts added. Recent results are cached."""
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()
@@ -119,13 +119,13 @@ class StageResults:
         return bool(self.kinematics.thrusts) and not self.kinematics.actuated
 
     def correction(self, point: str) -> Matrix:
-        """Strokes per motion of a point, with lost motion corrected."""
+        """Actuator strokes per unit motion of a point, with lost motion corrected."""
         if point not in self._corrections:
             self._corrections[point] = mapping_at(self.mechanism, self.kinematics, point, mapping=self.lost.correction)
         return self._corrections[point]
 
     def stopped(self, point: str) -> tuple[Matrix, StrokeLimits]:
-        """Strokes per motion of a point with lost motion corrected, and limits of strokes and of stops within reach."""
+        """Strokes per unit motion of a point with lost motion corrected, and limits of strokes and of the stops within reach."""
         return with_stops(self.mechanism, self.kinematics, self.correction(point), self.limits, point)
 
     @cached_property
@@ -140,12 +140,12 @@ class StageResults:
 
     @cached_property
     def small_motion(self) -> SmallMotion:
-        """Limits of small displacements."""
+        """Limits within which the theory of small displacements is valid."""
         return small_motion(self.mechanism, self.kinematics)
 
     @cached_property
     def drawn(self) -> LinearModel:
-        """Lumped model; refused if the stage is unstable under its permanent load."""
+        """Lumped model. Raises `DesignError` if the stage is unstable under its permanent load."""
         return standing(self.mechanism)
 
     @cached_property
@@ -165,7 +165,7 @@ class StageResults:
 
     @cached_property
     def felt(self) -> StageResults:
-        """Bench of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else this bench."""
+        """Results of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else these results."""
         if self.loaded is None or self.loaded.model is None:
             return self
         other = self.with_model(self.loaded.model)
@@ -185,7 +185,7 @@ class StageResults:
 
     @cached_property
     def limits(self) -> StrokeLimits:
-        """Strokes around the bias."""
+        """Stroke limits of the actuators around their bias."""
         return stroke_limits(self.mechanism)
 
     @cached_property
@@ -276,7 +276,7 @@ class StageResults:
         return linear_map_error(self.mechanism, self.kinematics, self.limits).worst
 
     def arm(self, point: str) -> Array:
-        """Vector from the platform's reference to a platform point; refuses points of other bodies."""
+        """Vector from the platform's reference point to another point of the platform; refuses points of other bodies."""
         if point == PLATFORM:
             return np.zeros(3)
         body, position = self.assembly.points[point]

@@ -85,7 +85,7 @@ class Matrix(InNotebook):
 
     @property
     def unit_places(self) -> tuple[list[str], list[str], list[list[str]]]:
-        """Units for the column heads, row heads and entries. A common unit appears only once, at the outermost level that shares it."""
+        """Units for the heads of columns, the heads of rows, and the entries. A common unit of a column or a row appears only in its head."""
         across, down = len(self.columns), len(self.rows)
         blank = [[""] * across] * down
         if isinstance(self.unit, str):
@@ -104,7 +104,7 @@ def _with(text: str, unit: str, form: str = "{} [{}]") -> str:
 def quiet(values: Array, against: Array | None = None) -> Array:
     """Return a copy of a matrix (rows, columns) with rounding noise set to 0 (`NOISE_RULE`).
 
-    `against` is a matrix of equal shape that determines the scale of rows and columns (default: the matrix).
+    `against` is a matrix of equal shape that determines the scale of rows and columns (default: the matrix itself).
 
     >>> quiet(np.array([[1.0, 1e-15], [1e-15, 2.0]])).tolist()
     [[1.0, 0.0], [0.0, 2.0]]

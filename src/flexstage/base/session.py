@@ -35,7 +35,7 @@ class Session:
         return kept
 
     def held(self) -> dict[str, int]:
-        """Return the number of cached results by function."""
+        """Return the number of cached results of each function."""
         counts = {name: each.cache_info().currsize for name, each in self._kept.items()}
         return {name: count for name, count in counts.items() if count}
 

@@ -18,7 +18,7 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 
 def leaf_beam(part: Leaf, material: Material) -> Beam:
-    """Build the Timoshenko beam of a leaf without plate action (Cowper's shear factor); warping is restrained unless its ends may warp.
+    """Build the Timoshenko beam of a leaf without plate action (Cowper's shear factor); warping is restrained unless the leaf has `warps`.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> leaf = leaf_beam(Leaf("steel", length=0.05, thickness=0.0005, width=0.01), steel)
@@ -37,11 +37,11 @@ def leaf_beam(part: Leaf, material: Material) -> Beam:
 def leaf_diagonal(part: Leaf, material: Material) -> Array:
     """Compute the diagonal (..., 6) of the leaf's compliance about its centre.
 
-    The leaf is a Timoshenko beam with two changes: the bending compliance about z is divided by the plate factors of `beams.plate`, and
-    torsion is `torsional_compliance`. In-plane bending and tension are those of the beam. Restrained contraction is neglected: for b >> L,
-    the true compliance is smaller, by a factor down to 1 - nu^2.
+    The leaf is a Timoshenko beam with two changes: the bending compliance about z is divided by the plate factors of `beams.plate`, and the
+    torsional compliance is that of `torsional_compliance`. In-plane bending and tension have the compliance of the beam. Restrained
+    contraction is neglected: for b >> L, the true compliance is smaller, by a factor down to 1 - nu^2.
 
-    With `section` beam, all six entries are those of `leaf_beam`, with Saint-Venant torsion, as in a textbook frame element.
+    If `section` is "beam", all six entries are those of `leaf_beam`, a textbook frame element.
 
     >>> soft = Material(young=1.0, poisson=0.3, density=1.0)
     >>> wide = leaf_diagonal(Leaf("soft", length=1.0, thickness=1e-3, width=0.5), soft)

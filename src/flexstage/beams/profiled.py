@@ -18,7 +18,7 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
     R is a^2/c for an ellipse, and the fillet radius for a corner-filleted hinge. A straight hinge has K_t = 1, because its corners are not
     specified.
 
-    Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere):
+    Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere), are:
 
     - circular notch: in bending +1 to +2 %, in tension 0 to -13 %;
     - fillets: in bending +3 to +7 %, in tension -2 to -10 %.
@@ -44,9 +44,9 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
 
 
 def proportions(profile: Profile, thickness: Number, family: str) -> tuple[Range, ...]:
-    """Return the ratios to check: thickness over the throat radius, or length over thickness for a straight profile.
+    """Return the ratio with a validated range: thickness over throat radius, or length over thickness of a straight profile.
 
-    The result is empty for profiles that were not compared with finite elements.
+    For free-form profiles, the result is empty: they were not compared with finite elements.
     """
     return () if isinstance(profile, Contour) else (_proportion(profile, thickness, family),)
 

@@ -43,7 +43,7 @@ _TOGETHER = 32
 
 @dataclass(frozen=True, eq=False)
 class Twisting:
-    """Response of a hinge to a unit torque at the stations (..., m): twist `rate` phi' [rad/(N m^2)] and `bimoment` E C_w theta' [m]."""
+    """Response to a unit torque at the stations (..., m) of a hinge: the twist `rate` phi' [rad/(N m^2)] and the `bimoment` E C_w theta' [m]."""
 
     rate: Array
     bimoment: Array
@@ -63,10 +63,10 @@ def free_twist(section: Section, shear: Array) -> Twisting:
 def constrained_twist(section: Section, points: Stations, young: Array, shear: Array) -> Twisting:
     """Compute the twist of a hinge with restrained warping; moduli `young` E and `shear` G [Pa], shape (..., 1).
 
-    Eliminating phi' (see the module) gives (E C_w theta')' - g theta + f = 0, with f = S r / (J + S r^2) and g = G S J / (J + S r^2). This
-    equation is solved as theta = A (f - g theta), with A the twofold integral by the rule of the stations.
+    Eliminating phi' (see the module) gives (E C_w theta')' - g theta + f = 0, with f = S r / (J + S r^2) and g = G S J / (J + S r^2). The
+    integral equation theta = A (f - g theta) is solved, where A integrates twice by the rule of the stations.
 
-    For a constant section whose end zones are resolved by the stations, theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
+    If the section is constant and the stations resolve its end zones, theta = f / g (1 - cosh(kx) / cosh(kL/2)), with k^2 = g / (E C_w).
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.section import Rectangle

@@ -20,7 +20,7 @@ SM_REF_A, SM_REF_B, SM_REF_B_REFITTED = "double-triangle-a", "double-triangle", 
 
 
 def double_triangle(name: str = SM_REF_B, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
-    """Return the case with this name and some changed `parameters`; its values are numbers without formulas.
+    """Return the case with this name and some changed `parameters`; formulas are replaced by their values.
 
     >>> double_triangle(parameters={"long_arm": "80 mm"}).units["vertical"].links["front"].at[0]
     0.08

@@ -47,23 +47,24 @@ def budget(
     """Compute the error budget at a platform point for a box of displacements (half widths [m, rad]) and a temperature change [K].
 
     Lost motion and drift (strokes fixed) are computed by the lumped model, for the loaded stage if the permanent load is significant. Drift
-    includes the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None` means 1 K
-    if drift is known. If expansion coefficients are missing, a change of 0 or `None` omits drift, as noted in `reasons`.
+    is computed with the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None`
+    means 1 K if drift is known. If expansion coefficients are missing and the change is 0 or `None`, drift is omitted, and `reasons` has a
+    note.
 
-    All errors are largest absolute values:
+    All these contributions are largest absolute values:
 
     - lost motion: J diag(Lambda) R_a xi;
     - crosstalk: J (Lambda - diag) R_a xi, plus the motion outside the ideal motions;
     - with lost motion corrected by the gains a = (R_a V^+ T)^-1 R_a xi: only the residual T a - V xi, listed as crosstalk;
-    - linear map: finite minus linear kinematics at the corners;
+    - linear map: finite kinematics minus linear kinematics at the corners;
     - gauge noise: `coverage` standard deviations;
     - quantisation: half a step of every gauge with the worst signs;
-    - stepping actuators: half a step of each with the worst signs (standard deviation: step/sqrt(12)).
+    - stepping actuators: half a step of each actuator with the worst signs (standard deviation: step/sqrt(12)).
 
-    For a force-driven stage in open loop, the forces are u = (V^+ C)^+ xi with the static gain C of the elastic model. The parasitic motion
-    C u - V xi replaces lost motion, crosstalk and linear map. `noise` has one-sided power spectral densities of actuator inputs (current,
-    force, stroke), wrenches and ground motion. The resulting rms motion is over the `band` [Hz] (default: the band of `response`) and
-    relative to the ground.
+    For a force-driven stage in open loop, the forces are u = (V^+ C)^+ xi, where C is the static gain of the elastic model. The budget then
+    has the parasitic motion C u - V xi instead of lost motion, crosstalk and linear map. `noise` has one-sided power spectral densities of
+    actuator inputs (current, force, stroke), wrenches and ground motion. The resulting rms motion is relative to the ground, and integrated
+    over the `band` [Hz] (default: the band of `response`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)

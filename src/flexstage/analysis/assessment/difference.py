@@ -35,7 +35,7 @@ class KeyFigure:
 
 @dataclass(frozen=True)
 class Change:
-    """Key figure before and after a change; `None` where it is missing."""
+    """Key figure before and after a change; a missing value is `None`."""
 
     TABLE: ClassVar[Layout] = Layout("Changes of key figures", "name old new difference relative")
 
@@ -102,7 +102,7 @@ def _value(figures: Mapping[str, KeyFigure], name: str) -> float | None:
 def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
     """Return the key figures: values of requirements, platform frequencies, stiffness, lost motion, strokes, safety factors.
 
-    They are named like measures in `[requirements]`.
+    Key figures have the names of measures in `[requirements]`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -26,7 +26,7 @@ SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisatio
 
 
 class ErrorBudget(Result):
-    """Largest errors by axis (rows) and source (columns) [m, rad]: with `ideal` mapping, and with lost motion `corrected`.
+    """Largest errors by axis (rows) and source (columns) [m, rad], with the `ideal` mapping and with `corrected` lost motion.
 
     `missing` names unknown sources (e.g. unspecified gauge noise), which are NaN and omitted from the sums. `ground` is the ground material
     assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. For a force-driven
@@ -78,7 +78,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
 
 
 def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, depth: int = 0) -> Array:
-    """Compute the strokes a = R_a xi (2^c, ..., n) [m] at the corners of a box of displacements along c coordinates.
+    """Compute the strokes a = R_a xi, shape (2^c, ..., n) [m], at the corners of a box of displacements xi along c coordinates.
 
     `depth` is the least number of batch axes between the corners and the strokes.
 

@@ -68,13 +68,13 @@ FINE_ROTATION = Quantity("rotation", ANGLE.si, "nrad", "50 nrad")
 
 
 class Extreme(Enum):
-    """Least or largest of the pieces of a measure."""
+    """Whether a measure is the least or the largest of its pieces."""
 
     LEAST = "least"
     LARGEST = "largest"
 
     def of(self, values: Array) -> Array:
-        """Return the measure (...) from its pieces (..., m)."""
+        """Return the value (...) of a measure from its pieces (..., m)."""
         return np.min(values, axis=-1) if self is Extreme.LEAST else np.max(values, axis=-1)
 
 
@@ -82,11 +82,12 @@ class Extreme(Enum):
 class MeasureKind:
     """Kind of measure: the `form` of its key, its `quantity` (`about`: for rotations), and the function `work` that computes its SI value.
 
-    The first sentence of the docstring of `work` is the meaning. `pointed`: a point may be specified. `extreme`: `work` returns pieces
-    (..., m), and the measure is the least or largest; an optimiser uses all pieces (every actuator, hinge, stack). `softening`: at worst, a
-    permanent load with load factor n multiplies the measure by (1 - 1/n)^softening. `over_strokes`: the measure covers all strokes. `felt`:
-    it depends on lost motion, drift or deflection, which the permanent load changes. `analytic`: complex-step differentiation is valid.
-    `along`: it is evaluated along a path of the design, or at a point of the path.
+    The first sentence of the docstring of `work` defines the measure. `pointed`: a point may be specified. `extreme`: `work` returns pieces
+    (..., m), one for every actuator, hinge or stack; the least or largest piece is the measure, and an optimiser uses all pieces.
+    `softening`: at worst, a permanent load with critical load factor n multiplies the measure by (1 - 1/n)^softening. `over_strokes`: the
+    measure is the worst over the full range of strokes. `felt`: the measure depends on lost motion, drift or deflection, which the
+    permanent load changes. `analytic`: complex-step differentiation is valid. `along`: the measure is evaluated along a path of the design,
+    or at a point of the path.
     """
 
     form: str
@@ -108,7 +109,7 @@ class MeasureKind:
         return first[:1].lower() + first[1:]
 
     def pieces(self, bench: StageResults, asked: Measure) -> Array:
-        """Pieces (..., m); a measure without `extreme` has one."""
+        """Pieces (..., m) of the measure; a measure without `extreme` has one piece."""
         found = np.asarray(self.work(bench, asked))
         return found[..., None] if self.extreme is None else found
 
@@ -123,10 +124,10 @@ class MeasureKind:
 
 @dataclass(frozen=True)
 class Measure:
-    """Measure of a stage: its `key`, `kind`, `name` (an axis, actuator, gauge, path, number) and point.
+    """Measure of a stage: its `key`, its `kind`, the `name` of an axis, actuator, gauge, path or number, and a point.
 
-    `place` is the value of a path's drive; without it, the measure is the worst along the path. `path` names the path of a measure `over` a
-    path.
+    With `place`, the driven coordinate of the path has this value; without it, the measure is the worst along the path. `path` names the
+    path of a measure that is evaluated `over` a path.
     """
 
     key: str
@@ -142,7 +143,7 @@ class Measure:
 def stroke(bench: StageResults, asked: Measure) -> Array:
     """Symmetric stroke along one axis, with lost motion corrected.
 
-    Every actuator and stop limits it in both directions; for force-driven stages, the continuous force limits do.
+    Every actuator and stop limits the stroke in both directions; in force-driven stages, the continuous force limits it.
     """
     if bench.forced:
         return bounds_along(bench.force_workspace(asked.point), asked.name)
@@ -262,7 +263,7 @@ def deflection(bench: StageResults, asked: Measure) -> Array:
 def force(bench: StageResults, asked: Measure) -> Array:
     """Blocked force of the platform along one axis.
 
-    For force-driven stages, the continuous stroke times the stiffness.
+    For force-driven stages, the blocked force is the continuous stroke times the stiffness.
     """
     if bench.forced:
         bounds = np.min(bounds_along(bench.force_workspace(PLATFORM), asked.name), axis=-1)
@@ -579,9 +580,9 @@ def _least_factor(bench: StageResults, load_cases: Iterable[cases.LoadCase]) -> 
 def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     """Lowest natural frequency with the required motions of the platform fixed.
 
-    With the null space N of the n constraint rows of these motions, the constrained stage has the matrices N'KN and N'MN. By interlacing,
-    the frequency is at most that of mode n + 1 of the free stage. The Rayleigh quotient of the real mode gives exact complex-step
-    derivatives.
+    N spans the null space of the n constraint rows of these motions; the constrained stage has the matrices N'KN and N'MN. By interlacing,
+    this frequency is at most the frequency of mode n + 1 of the free stage. The Rayleigh quotient of the real mode shape gives exact
+    complex-step derivatives.
     """
     axes = [axis for axis, value in bench.command.items() if value]
     if not axes:
@@ -674,7 +675,7 @@ MEASURES: Register[MeasureKind] = Register(
 
 
 def measure_kind(form: str) -> MeasureKind:
-    """Return the kind of measure of a form. Raises `DesignError` if no installed package provides it.
+    """Return the kind of measure of a form. Raises `DesignError` if no installed package provides this kind.
 
     >>> measure_kind("mass").meaning
     'mass of the platform without payload'

@@ -56,7 +56,7 @@ class Requirement(Measure):
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """Verdict on a requirement by the `value` (...) of the design in SI. An unknown value is `None`, with the `reason`."""
+    """Verdict on a requirement, from the design's `value` (...) in SI units; an unknown value is `None`, and `reason` explains it."""
 
     requirement: Requirement
     value: Array | None
@@ -66,7 +66,7 @@ class Verdict:
     def margin(self) -> Array:
         """Relative margin (...) to the limit (0.1: 10 % reserve); negative if the requirement is not met, NaN without a value.
 
-        For a limit of zero, it is the absolute margin in SI.
+        For a limit of zero, the margin is absolute, in SI units.
         """
         if self.value is None:
             return np.asarray(np.nan)
@@ -106,8 +106,8 @@ def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
 def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     """Read all `[requirements]` lines of a description.
 
-    A line contains `at least` or `at most`, a value with its unit, and for some keys `at` and a named point. Raises `DesignError` with all
-    unknown keys (and the nearest known keys), unreadable lines, wrong units and unknown points.
+    A line contains `at least` or `at most` and a value with its unit; for some keys, `at` and a named point may follow. Raises
+    `DesignError` with all unknown keys (and the nearest known keys), unreadable lines, wrong units and unknown points.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = requirements(double_triangle())[0]
@@ -151,7 +151,7 @@ def _keys_of_form(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[s
 
 
 def requirement(mechanism: Mechanism, key: str, text: str, where: str) -> Requirement:
-    """Read one line: `key` is a measure, `text` its limit as in `[requirements]`. Raises `DesignError` at `where`.
+    """Read one requirement: `key` names a measure, `text` is its limit as in `[requirements]`. Errors name the location `where`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> requirement(double_triangle(), "mass", "at most 12 kg", "limits.mass").limit
@@ -173,7 +173,7 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
 
 
 def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
-    """Read the name of a measure: a key as in `[requirements]`, for some keys with `at` and a named point. Raises `DesignError` at `where`.
+    """Read the name of a measure: a key as in `[requirements]`; for some keys, `at` and a named point follow. Errors name `where`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")

@@ -43,9 +43,9 @@ class Sensitivities(Result):
 
     `frequency` (P, k) is in Hz per SI unit of the parameter; for the modes of a cluster, it is the derivative of the mean frequency.
     `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi,
-    converted to frequency slopes. They are valid for changes of a single parameter and cannot be added. `gain` and `loss` (P, n) are the
-    derivatives of each actuator's gain and lost motion; n = 0 if the strokes do not determine the platform's motion. `missing` has the
-    reasons for absent results.
+    converted to frequency slopes. These slopes are valid for changes of a single parameter and cannot be added. `gain` and `loss` (P, n)
+    are the derivatives of each actuator's gain and lost motion; n = 0 if the strokes do not determine the platform's motion. `missing` has
+    the reasons for absent results.
     """
 
     parameters: tuple[str, ...]
@@ -86,12 +86,12 @@ class Sensitivities(Result):
 
     @property
     def relative_frequency(self) -> Annotated[Matrix, VIEW]:
-        """Relative change of each frequency per relative change of each parameter (P, k)."""
+        """Relative change of each frequency per relative change of each parameter, shape (P, k)."""
         return Matrix(self.frequency * self.values[:, None] / self.frequencies, self.parameters, self._modes, "1")
 
     @property
     def relative_loss(self) -> Annotated[Matrix, VIEW]:
-        """Change of each actuator's lost motion per relative change of each parameter (P, n)."""
+        """Change of each actuator's lost motion per relative change of each parameter, shape (P, n)."""
         return Matrix(self.loss * self.values[:, None], self.parameters, self.actuators, "1")
 
 
@@ -100,11 +100,11 @@ class Sensitivities(Result):
 def sensitivities(
     mechanism: Mechanism, parameters: tuple[str, ...] | None = None, *, modes: int = 12, cluster: float = 1e-6
 ) -> Sensitivities:
-    """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to addressed numbers (default: all).
+    """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to `parameters` (default: all numbers).
 
-    Modes closer than `cluster` (relative gap) count as repeated. Only the derivative of their mean is smooth. All modes of a cluster are
-    listed. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises `DesignError` for unknown
-    addresses, and for addresses that are not a single number in the description.
+    Modes with a relative frequency gap below `cluster` count as repeated; only the derivative of their mean is smooth. All modes of a
+    cluster are listed. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises `DesignError`
+    for unknown addresses, and for addresses that are not a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
@@ -167,7 +167,7 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
 def override_level(mechanism: Mechanism, name: str) -> int:
     """Return the override level of an address: 0 for no override, 1 for all instances of a unit, 2 for a single instance.
 
-    Named numbers have higher levels. A number that depends on others has a higher level than they have.
+    Named numbers have higher levels. A number defined by a formula has a higher level than the numbers in the formula.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [override_level(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
@@ -179,10 +179,10 @@ def override_level(mechanism: Mechanism, name: str) -> int:
 
 
 def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
-    """Yield groups of parameter indices that can be stepped in one batch.
+    """Yield groups of parameters (indices) whose derivatives can be computed in one batch.
 
-    An override hides the number that it replaces, and a formula's result hides its named numbers. Therefore, each level is stepped
-    separately.
+    An override hides the number that it replaces, and a formula's result hides its named numbers. Therefore, numbers of different override
+    levels are in different groups.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))

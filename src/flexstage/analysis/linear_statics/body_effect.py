@@ -38,7 +38,7 @@ class BodyEffect:
 
 
 def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None = None) -> tuple[BodyEffect, ...]:
-    """Compare a lumped model of one design with rigid and with flexible bodies.
+    """Compare stiffness and frequencies of a lumped `model` with rigid bodies and of the same model with flexible bodies.
 
     The quantities are the stiffness of the platform along each ideal motion of `kinematics`, with strokes fixed, and the first six natural
     frequencies. The result is empty if no body has an estimated flexibility, for batches, and for large (sparse) stages.
@@ -88,7 +88,7 @@ def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, 
 def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
     """Yield one warning for each body whose flexibility changes quantities by more than `SIGNIFICANT`.
 
-    It names the two quantities that change most.
+    The warning names the two quantities that change most.
     """
     large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: -round(abs(each.change), 6))
     for body in dict.fromkeys(each.body for each in large):

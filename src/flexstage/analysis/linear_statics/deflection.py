@@ -18,7 +18,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 class Deflection(Result):
-    """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each specified force.
+    """Twist (..., 6, causes) of the platform's reference point or a named point, due to own weight, each payload and each specified force.
 
     In closed loop, the gauges measure the deflection and the strokes compensate for it. In open loop, the deflection is the load term of
     Eq. 11 (Shin & Moon).
@@ -38,8 +38,8 @@ class Deflection(Result):
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
     """Compute the deflection of a platform point under gravity and specified forces, q = K^-1 f, with strokes fixed.
 
-    If the model is that of the loaded stage (see `load_effect`), it is the motion from the unloaded to the loaded equilibrium, with large
-    displacements. The loads then act together, as one cause.
+    For the model of the loaded stage (see `load_effect`), the deflection is the motion from the unloaded to the loaded equilibrium, by the
+    theory of large displacements. All loads are then one cause.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -43,8 +43,8 @@ class Drift(Result):
 
     `motion` is at the platform and named points (six components each). `gauges` are the readings, `forces` the six stress resultants of
     each elastic link. `ground` is the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the
-    fixed point of the ground, where linear fields are zero. `taken` names each body's material, `bodies` are the twists (..., 6, 4) of all
-    bodies at their reference points.
+    fixed point of the ground; linear temperature fields are zero there. `taken` names the material used for each body. `bodies` are the
+    twists (..., 6, 4) of all bodies at their reference points.
     """
 
     motion: Matrix
@@ -98,11 +98,11 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     """Compute the thermal drift of a stage: free expansion of bodies and parts, redistributed elastically by the links, with strokes fixed.
 
     `ground` names the ground's material (default: from `ground_of`; `none`: no expansion). Motions are relative to the ground's `datum`. A
-    stage of one material, including the ground, expands without stress. For a model linearised about a state, `linearise(state,
-    inner=False)`, the expansion is for the nominal stage and the stiffness for the loaded stage.
+    stage of one material, including the ground, expands without stress. If the model is linearised about a state, `linearise(state,
+    inner=False)`, the expansion is that of the nominal stage, and the stiffness that of the loaded stage.
 
     Raises `DesignError` for missing expansion coefficients, an unknown ground material, or locked degrees of freedom that block expansion.
-    It is also raised for models whose stiffness is not assembled from links: mapped models, and linearised models with `inner` coordinates.
+    Models whose stiffness is not assembled from links are also errors: mapped models, and linearised models with `inner` coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -59,9 +59,9 @@ class DriveForce(Result):
 def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWorkspace) -> DriveForce:
     """Compare the elastic stage with its ideal guide under the inputs that move the platform along each coordinate.
 
-    By reciprocity, x_j = sum over the links of g_j^T k g_u. g_j are the link deformations under a unit load on the platform along j, g_u
-    the link deformations under the inputs u. If only the free DOFs of the ideal joints deform, the same sum is the displacement of the
-    ideal guide. Only for a single design.
+    By reciprocity, the displacement x_j is the sum of g_j^T k g_u over the links. Here g_j is a link's deformation under a unit load on the
+    platform along j, and g_u its deformation under the inputs u. If only the free DOFs of the ideal joints deform, the same sum is the
+    displacement of the ideal guide. Batches are not supported.
 
     >>> import flexstage as fs
     >>> stage = fs.case("voice-coil-stage")

@@ -24,11 +24,12 @@ def amplified(mechanism: Mechanism) -> Amplified:
 
     The lumped model gives the platform's compliance at its reference point with the stroke fixed, and its motion at full stroke. The part's
     centre is the platform's reference point, and its axes are the stage's axes. A link with this part has `along` in the stage's x and
-    `bends` in the stage's z direction. Voltages, bias and capacitance are taken from the stage's single actuator. Half of the mass of all
-    bodies and links is at each face.
+    `bends` in the stage's z direction. Voltages, bias and capacitance are taken from the stage's single actuator. Each of the two faces has
+    half of the mass of all bodies and links.
 
-    The part is exact in statics. It has no internal modes, so it is valid well below the first internal mode with both faces fixed. Loads
-    and preload of the actuator are ignored. Raises `DesignError` for a stage without exactly one actuator.
+    The part has the stage's exact static behaviour. It has no internal modes; therefore it is valid only well below the first internal mode
+    with both faces fixed. Loads and preload of the actuator are ignored. Raises `DesignError` unless the stage has exactly one actuator, a
+    stroke actuator.
 
     >>> from flexstage.cases.registry import case
     >>> part = amplified(case("bridge"))

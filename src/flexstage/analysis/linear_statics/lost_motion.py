@@ -67,8 +67,8 @@ class LostMotion(Result):
 
     `gain` is the elastic T = dx/da (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its
     diagonal. `loss` is Lambda = I - transfer. `parasitic` is the component of T outside the ideal motions. `budget` has the contribution of
-    every link and axis to each entry of Lambda; their sum is Lambda. `correction` has the gains of the corrected strokes, a = (R_a V^+
-    T)^-1 R_a xi. `energy` is the strain energy by part, per squared stroke.
+    every link and axis to each entry of Lambda; their sum is Lambda. `correction` is the matrix (R_a V^+ T)^-1 R_a, which gives the
+    corrected strokes a of a motion xi. `energy` is the strain energy by part, per squared stroke.
     """
 
     gain: Matrix
@@ -96,14 +96,14 @@ class LostMotion(Result):
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compute lost motion from an elastic model and the ideal kinematics of the same stage.
 
-    Lost motion is Lambda = I - R_a V^+ T. Its budget by link is exact for any graph. By virtual work and reciprocity, Lambda_ij = sum_e
-    f_e^(i) . gamma_e^(j). Here f_e^(i) is the force of link e under the platform wrench (R_a V^+)^T e_i with zero strokes, and gamma_e^(j)
-    the deformation of link e in the ideal motion of stroke j. For one unloaded lever, the diagonal is eps / (1 + eps), eps = K_theta2 /
-    (r_1^2 K_1) (Eq. 11 of Shin & Moon). Motions are small.
+    Lost motion is Lambda = I - R_a V^+ T. Its contributions by link are exact for any graph of links. By virtual work and reciprocity,
+    Lambda_ij = sum_e f_e^(i) . gamma_e^(j). Here f_e^(i) is the force of link e under the platform wrench (R_a V^+)^T e_i with zero
+    strokes. The deformation gamma_e^(j) of link e belongs to the ideal motion of stroke j. For one unloaded lever, the diagonal is eps / (1
+    + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Motions are small.
 
-    For a model about a displaced state, the ideal motion is still for the nominal position. The budget then requires the model
-    `linearise(state, inner=False)`, and has an additional contribution `geometric` of the geometric stiffness. Raises `DesignError` if the
-    strokes do not determine the platform's motion.
+    For a model linearised about a displaced state, the ideal motion is still that of the nominal position. The budget then requires the
+    model `linearise(state, inner=False)`, and has the additional contribution `geometric` of the geometric stiffness. Raises `DesignError`
+    if the strokes do not determine the platform's motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

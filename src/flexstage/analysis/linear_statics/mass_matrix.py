@@ -28,10 +28,10 @@ _MASSLESS = "the body of this point has no specified mass"
 class MassMatrix(Result):
     """Mass matrix at a point in the stage's axes: a velocity twist v has the kinetic energy v^T M v / 2.
 
-    `rigid` (..., 6, 6) is for the isolated `body` of the point with its payloads. `reduced` (..., 6, 6) is for the whole stage: all other
-    masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA J. 3, 380, 1965). With the stiffness at the same
-    point, `reduced` gives natural frequencies that are never below the frequencies of the whole model, and close to them if there are no
-    local modes nearby. `reasons` explain unknown masses.
+    `rigid` (..., 6, 6) is the mass matrix of the point's `body` alone, with its payloads. `reduced` (..., 6, 6) includes the whole stage:
+    all other masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA J. 3, 380, 1965). `reduced` and the
+    stiffness at the same point give natural frequencies that are never below the frequencies of the whole model. They are close to these
+    frequencies if there are no local modes nearby. `reasons` explain unknown masses.
     """
 
     point: str
@@ -46,10 +46,10 @@ class MassMatrix(Result):
 def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> MassMatrix:
     """Compute the mass matrix (..., 6, 6) of the platform or another body at its reference or a named point [kg, kg m, kg m^2].
 
-    M_rigid = X^T M X, with X the transport of twists from the point to the body's reference point. M_reduced = S^T M S, with the static
-    shapes S = K^-1 C^T (C K^-1 C^T)^-1 for unit twists of the point with strokes fixed. Displacements are small; free internal modes are
-    excluded. `reduced` is None for a point with fewer than six degrees of freedom, or with a free internal mode of its body. `rigid` is
-    None for a body without mass.
+    M_rigid = X^T M X, with X the transport of twists from the point to the body's reference point. M_reduced = S^T M S, where S = K^-1 C^T
+    (C K^-1 C^T)^-1 are the static shapes for unit twists of the point with strokes fixed. The theory assumes small displacements, without
+    free internal modes. `reduced` is None for a point with fewer than six degrees of freedom, or with a free internal mode of its body.
+    `rigid` is None for a body without mass.
 
     >>> import flexstage as fs
     >>> stage = fs.case("double-triangle")

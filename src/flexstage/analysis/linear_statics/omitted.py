@@ -35,7 +35,7 @@ class Omitted:
 
     @property
     def interaction(self) -> Annotated[float, RATIO]:
-        """Difference that single degrees of freedom do not explain."""
+        """Difference of the responses that the separate effects of single degrees of freedom do not explain."""
         return self.full - self.simple - sum(self.changes.values())
 
     @property
@@ -47,8 +47,8 @@ class Omitted:
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static responses with restricted and with full parts, for the `channel` = (output, input).
 
-    `simple` locks or frees degrees of freedom, by part or by link (`vertical/pivot`). Each of them regains its elasticity individually.
-    Only for a single design.
+    `simple` locks or frees degrees of freedom, by part or by link (`vertical/pivot`). Each of these degrees of freedom regains its
+    elasticity individually. Batches are not supported.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.cases.double_triangle import EQUATION_3

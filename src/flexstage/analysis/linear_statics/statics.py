@@ -65,8 +65,8 @@ class DirectionalStiffness:
 class Statics(Result):
     """Static behaviour of the platform at a point.
 
-    `compliance` (..., 6, 6) is from a wrench at `load_point` to the twist at `read_point`; `stiffness` is its inverse. `held` is the
-    in-plane stiffness tensor with all other degrees of freedom fixed, `free` with all others free (as in a push test). `centre` (..., 3) is
+    `compliance` (..., 6, 6) maps a wrench at `load_point` to the twist at `read_point`; `stiffness` is its inverse. `held` and `free` are
+    the in-plane stiffness tensors with all other degrees of freedom fixed and free (as in a push test), respectively. `centre` (..., 3) is
     the centre of stiffness relative to the load point [m].
     """
 
@@ -92,8 +92,9 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
 
     The compliance is C = C_read K^-1 C_load^T, with strokes fixed and small displacements. If the platform has fewer than six degrees of
-    freedom in the model (the mapped model of a guide), the stiffness is infinite along the others. The stiffness, and tensors derived from
-    it, are then NaN (decided by the first design). Along an axis without stiffness, the compliance is infinite.
+    freedom in the model (the mapped model of a guide), the stiffness is infinite along the locked ones. All entries of the stiffness, and
+    tensors derived from it, are then NaN; in a batch, the first design decides. Along an axis without stiffness, the compliance is
+    infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -128,7 +129,7 @@ class FreedomStiffness(Result):
     """Stiffness [N/m, N m/rad] of each degree of freedom at a point, with strokes fixed and the other degrees of freedom free or fixed.
 
     `motions` are the coordinates of the platform's ideal motions, `constraints` the coordinates that links constrain. The free stiffness is
-    the result of a push test at the point. It includes the coupling of an ideal motion into other axes.
+    the result of a push test at the point, and includes the coupling of an ideal motion into other axes.
     """
 
     point: str
@@ -146,8 +147,9 @@ class FreedomStiffness(Result):
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
     """Compute stiffness by degree of freedom for fewer than six ideal motions: along ideal motions, and along constraints.
 
-    The statics `found` are at a point of the platform. The stiffness is 1 / C_ii with the other degrees of freedom free, and K_ii with the
-    others fixed; NaN for a locked degree of freedom. Returns None for six ideal motions, or if read-out and load points differ.
+    `found` is the statics at a point of the platform. The stiffness is 1 / C_ii with the other degrees of freedom free, and K_ii with the
+    others fixed; NaN for a locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and load points
+    differ.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -217,8 +219,8 @@ def directional(tensor: Array) -> DirectionalStiffness:
 def centre_of_stiffness(stiffness: Array) -> Array:
     """Compute the centre of stiffness (..., 3) relative to the reference: the antisymmetric part of K_tt^-1 K_tr.
 
-    At this point, the coupling of forces and rotations is minimal. If there is a fully uncoupled centre c, K_tr = -K_tt [c]x. Another
-    definition of the centre of stiffness is by Loncaric (1987).
+    At this point, the coupling of forces and rotations is minimal. If there is a fully uncoupled centre c, K_tr = -K_tt [c]x. Loncaric
+    (1987) gives another definition of the centre of stiffness.
 
     >>> from flexstage.spatial.frame import transport
     >>> carry = transport(np.array([0.0, 0.0, -0.025]))

@@ -19,9 +19,9 @@ from flexstage.base.units.quantity import RATIO, STIFFNESS
 class UnitOutput:
     """Output properties of one isolated unit, in its own frame.
 
-    `unit` is the unit's name, `copy` the analysed instance. `direction` (3,) is the direction of the output, `stiffness` the 6x6 stiffness
-    at the output with strokes fixed. If the output is guided along the direction, `gain` is the output per stroke, and `ideal_gain` the
-    gain without elasticity.
+    `unit` is the unit's name; `copy` is the analysed instance. `direction` (3,) is the direction of the output; `stiffness` is the 6x6
+    stiffness at the output with strokes fixed. If the output is guided along the direction, `gain` is the output per stroke, and
+    `ideal_gain` the gain without elasticity.
     """
 
     unit: str

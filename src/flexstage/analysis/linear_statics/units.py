@@ -33,8 +33,8 @@ class UnitResult(UnitOutput):
     """Properties of one isolated unit by the lumped model.
 
     `loss` and `load_compliance` [m/N] are for an output guided along its direction. `series` is the unit's stiffness in actuator
-    coordinates for the mapped model (`None` if this model does not support the unit). For a lever unit, `lever` are the springs, and
-    `omitted` is the error of the gain by Eq. 3, by degree of freedom.
+    coordinates for the mapped model (`None` if this model does not support the unit). For a lever unit, `lever` has the springs of lever
+    theory; `omitted` has the error of the gain by Eq. 3 for each degree of freedom.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -52,10 +52,10 @@ class UnitResult(UnitOutput):
 
 
 def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
-    """Analyse the first instance of every isolated unit with exactly one actuator at its output. Only for a single design.
+    """Analyse the first instance of every isolated unit with exactly one actuator at its output. Batches are not supported.
 
-    A unit that cannot be isolated (a carriage guided by neighbouring units) is omitted. `omissions`: also compute the errors of lever
-    theory, which takes most of the time.
+    A unit that does not work in isolation (a carriage guided by neighbouring units) is omitted. With `omissions`, the errors of lever
+    theory are also computed, which takes most of the time.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um

@@ -49,7 +49,7 @@ class Amount:
     dimension: Dimension
 
     def noun(self) -> str:
-        """Return its kind in words, e.g. "a length", "a ratio" or "a quantity in m^2".
+        """Return the kind of quantity in words, e.g. "a length", "a ratio" or "a quantity in m^2".
 
         >>> evaluate(parse_expression("2 mm * 3 mm"), {}).noun()
         'a quantity in m^2'

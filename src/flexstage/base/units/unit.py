@@ -129,7 +129,7 @@ def _quantity(powers: tuple[tuple[str, Fraction], ...], unit: str) -> Quantity:
 
 
 def quantity_of_unit(unit: str) -> Quantity:
-    """Return the quantity of a unit, displayed in it; raises `ValueError` for an unknown unit.
+    """Return the quantity of a unit, with this unit as its display unit; raises `ValueError` for an unknown unit.
 
     >>> quantity_of_unit("mm").noun, quantity_of_unit("mm").shown
     ('a length', 'mm')

@@ -29,7 +29,7 @@ class Resolution(CheckedFields):
     """Discretisation of a flexure: numbers of modes and points.
 
     `twist`, `across` and `bending` are the numbers of modes of twist and of bending about y and z. `fields` are the numbers of line loads
-    on the two plate fields, with one mode each. `points` is the number of points along the flexure.
+    on the two plate fields; each load gives one mode. `points` is the number of points along the flexure.
     """
 
     twist: int = 6
@@ -49,9 +49,10 @@ STRESSES = Resolution(twist=3, across=4, bending=4)
 class FlexureLaw:
     """Tables of a flexure (docs/nonlinear.md, 3). The leading axes are flexures with equal numbers of modes.
 
-    - `form` (..., q, q): second derivative of the quadratic energy by all q amplitudes, first k of curvature, then e of plate fields.
-    - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures of unit amplitudes at the points of the rule and of the rotation
-      steps.
+    - `form` (..., q, q): second derivative of the quadratic energy with respect to the q amplitudes: k of curvature, then e of plate
+      fields.
+    - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures due to unit amplitudes, at the points of the integration rule
+      and of the rotation steps.
     - `plate` (..., n, 2, e): the fields a2 and a4.
     - `compliance` (..., n, 3): stretch and shear per force.
     - `trapeze` (...): I_p / A; `stretch` (..., 2): the stiffness against Gaussian curvature.
@@ -59,7 +60,7 @@ class FlexureLaw:
     - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].
     - `half` (..., 2): half thickness and half width [m].
     - `natural` (..., 2): natural curvatures about z and across the width, times the length.
-    - `rest` (..., q): the first derivative of the quadratic energy due to the natural curvatures, with opposite sign.
+    - `rest` (..., q): the negative first derivative of the quadratic energy, due to the natural curvatures.
     """
 
     length: Array
@@ -153,10 +154,10 @@ def natural_curvature(part: Leaf, material: Material) -> float:
 
 
 def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False, curvature: float = 0.0) -> FlexureLaw:
-    """Build the law of a part with a `Beam` by stress modes: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
+    """Build the law of a part with a `Beam` from stress modes: curvature = flexibility(s) x polynomial (docs/nonlinear.md, 14).
 
-    At zero load, the law gives the 6x6 stiffness matrix of the beam. With `flat`, the section is thin, and its fibres far from the axis
-    stretch in twist (Wagner effect). `curvature` is the natural curvature about z [1/m].
+    At zero load, the law gives the 6x6 stiffness matrix of the beam. With `flat`, the section is assumed to be thin: twist stretches its
+    fibres far from the axis (Wagner effect). `curvature` is the natural curvature about z [1/m].
     """
     places, weights, flexibility, inertia = _whole(part)
     length = np.sum(weights)

@@ -19,8 +19,8 @@ FINE = 200
 class Rule:
     """Gauss rule on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), the integrals of the interpolant from 0 to each point.
 
-    `knots` (n + 2,) are 0, the points and 1. `inner` (3 (n + 1),) are three Gauss points in each interval between knots. `ends` (2, n)
-    times the values at the points gives the interpolant at 0 and 1.
+    `knots` (n + 2,) are 0, the points and 1. `inner` (3 (n + 1),) are three Gauss points in each interval between knots. The product of
+    `ends` (2, n) and the values at the points is the interpolant at 0 and 1.
     """
 
     points: Array
@@ -90,7 +90,7 @@ class Across:
 
 @functools.cache
 def across(degrees: tuple[int, ...]) -> Across:
-    """Integrate the shapes of these `degrees` across the width.
+    """Compute the integrals for shapes of these polynomial `degrees`.
 
     >>> across((2,)).curved.round(12).tolist()
     [[1.0]]
@@ -104,9 +104,9 @@ def across(degrees: tuple[int, ...]) -> Across:
 
 
 def project(values: Array, places: Array, weights: Array, size: int) -> Array:
-    """Project functions on P_0 ... P_(size - 1) by least squares; returns coefficients (..., size).
+    """Project functions on the first `size` Legendre polynomials P_k by least squares; returns coefficients (..., size).
 
-    The functions have `values` (..., p) at `places` (p,), with integration `weights` (p,).
+    `values` (..., p) are the functions at the integration points `places` (p,), which have the `weights` (p,).
 
     >>> rule = gauss(5)
     >>> project(rule.points**2, rule.points, rule.weights, 3).round(12).tolist()

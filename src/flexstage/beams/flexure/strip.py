@@ -34,7 +34,7 @@ class Fields:
     """Modes of the fields a2 and a4 of a leaf with one amplitude per mode (docs/nonlinear.md, 11).
 
     Lengths are divided by L, energies by D b / L. `form` (..., e, e) is the quadratic form of the e amplitudes. `values` (..., 2, e, n) are
-    a2 and a4 at the n points of a rule. `coupling` (..., 2, e, k) are the integrals of a2 and a4 with P_k, k < n.
+    a2 and a4 at the n points of a rule. `coupling` (..., 2, e, k) are the integrals of a2 and a4 times P_k, for all k < n.
     """
 
     form: Array
@@ -58,7 +58,7 @@ def _products() -> tuple[Array, Array, Array]:
 
 
 def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
-    """Build the quadratic form (120, 120) of a2, a4, psi2, psi4 of a strip of unit length, divided by D b (docs/nonlinear.md, 10).
+    """Build the quadratic form (120, 120) of fields a2, a4, psi2, psi4 of a strip of unit length, divided by D b (docs/nonlinear.md, 10).
 
     >>> form = stiffness(0.5, 0.005, 0.3)
     >>> form.shape, bool(np.allclose(form, form.T))
@@ -88,7 +88,7 @@ def fields(width: float, thickness: Number, poisson: Number, size: int, loads: t
 
     `width` and `thickness` are divided by the length. `size` is the number of points of the rule.
 
-    Cached for each proportion: do not modify the arrays.
+    The results are cached; their arrays cannot be modified.
 
     >>> fields(0.3, 0.003, 0.3, 10).values.shape
     (2, 10, 10)

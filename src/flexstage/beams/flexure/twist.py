@@ -22,14 +22,14 @@ _CUT = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Functions of s at p points: `values` (..., k, p), and `slopes`, their derivatives by s."""
+    """Functions of s at p points: `values` (..., k, p), and `slopes`, the derivatives with respect to s."""
 
     values: Array
     slopes: Array
 
 
 def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
-    """Compute the twist rates with restrained warping (docs/nonlinear.md, 9), P_k - cosh(c u) / cosh(c), with sinh for odd k, u = 2 s - 1.
+    """Compute the twist rates P_k - cosh(c u) / cosh(c) of restrained warping (docs/nonlinear.md, 9); sinh if k is odd, u = 2 s - 1.
 
     `decay` c (...) is half the length times sqrt(G J / (E C_w)). The computation does not overflow for large c.
 
@@ -71,10 +71,10 @@ def _along() -> tuple[Array, Array, Array]:
 
 
 def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
-    """Compute the reduction (..., k, k) of the twist energy by curvature of the section, divided by D b / L.
+    """Compute how much curvature of the section reduces the twist energy: a quadratic form (..., k, k), divided by D b / L.
 
-    `width` is divided by the length; `twist` has the modes at the `FINE` points. With w_xx = - k_x' z and w_xz = - k_x, the plate also
-    bends by a_j phi_j, j = 3, 5, 7, with a and a' zero at the clamps. The fields a_j minimise the energy for a given twist
+    `width` is divided by the length; `twist` has the twist modes at the `FINE` points. In addition to w_xx = - k_x' z and w_xz = - k_x, the
+    plate bends by a_j phi_j with j = 3, 5, 7; a_j and a_j' are zero at the clamps. The fields a_j minimise the energy for a given twist
     (docs/nonlinear.md, 9).
     """
     width_wise, weights = across(_DEGREES), gauss(FINE).weights
