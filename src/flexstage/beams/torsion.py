@@ -43,7 +43,7 @@ _TOGETHER = 32
 
 @dataclass(frozen=True, eq=False)
 class Twisting:
-    """Response to a unit torque at the stations (..., m) of a hinge: the twist `rate` phi' [rad/(N m^2)] and the `bimoment` E C_w theta' [m]."""
+    """Response to a unit torque at the stations (..., m) of a hinge: twist `rate` phi' [rad/(N m^2)] and `bimoment` E C_w theta' [m]."""
 
     rate: Array
     bimoment: Array

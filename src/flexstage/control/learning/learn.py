@@ -31,7 +31,7 @@ BEYOND = Heading("beyond the band", digits=3)
 
 @dataclass(frozen=True, eq=False)
 class RobustBand:
-    """Robust learning band, with its `contraction`: the largest ||Q (I - gain P P^^-1)|| over its frequencies (see `robust_band`)."""
+    """Robust learning `band`. `contraction` is the largest ||Q (I - gain P P^^-1)|| over the frequencies in it (see `robust_band`)."""
 
     band: Band
     contraction: float
@@ -41,10 +41,10 @@ class RobustBand:
 class LearningResult:
     """Result of iterative learning in passes along the same path, for the loop's `coordinates` in their `units`.
 
-    `rms` (passes, f) is the measured rms error in the band up to `band` [Hz]: first without learning, then after each learned pass. Its
-    last row is the rms of four runs with the learned input; `noise` (f,) is the non-repeating component of these runs. `beyond` (f,) is the
-    rms error outside the band, which is not learned. `contraction` is the largest contraction factor per pass for relative mode shifts up
-    to `spread`; `gain` is the learning gain.
+    `rms` (passes, f) is the measured rms error in the band up to `band` [Hz]: first without learning, then after each learned pass. The
+    last row of `rms` is the rms of four runs with the learned input; `noise` (f,) is the non-repeating component of these runs. `beyond`
+    (f,) is the rms error outside the band, which is not learned. `contraction` is the largest contraction factor per pass for relative mode
+    shifts up to `spread`; `gain` is the learning gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -83,16 +83,16 @@ class LearningResult:
 
     @property
     def above_noise(self) -> Annotated[Array, VIEW, Along("coordinates")]:
-        """Ratio (f,) of the error in the band after the last pass to its non-repeating component."""
+        """Ratio (f,) of the error after the last pass to the non-repeating error, both in the band."""
         return self.rms[-1] / self.noise
 
 
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
     """Find the frequency band in which ||I - gain P P^^-1|| is at most 0.8, for relative mode shifts up to `spread`.
 
-    P are the loop's responses with shifted modes, P^ the model's responses, both scaled to lengths. With a norm below 1 at all frequencies,
-    the error decreases from pass to pass (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114). The band also ends where ||P^^-1||
-    exceeds 100. Raises `DesignError` if this leaves no band.
+    P are the loop's responses with shifted modes; P^ are the model's responses. Rotations in them are scaled to lengths. If the norm is
+    below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114). The band also
+    ends where ||P^^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
     """
     plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)
@@ -125,7 +125,7 @@ def line_grid(closed: Loop, spread: float) -> Array:
 
 
 def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) -> Array:
-    """Compute the pose (n, k) that the gauges measure along a true path (n, k), with the model's lags up to four times `end` [Hz]."""
+    """Compute the poses (n, k) that gauges measure on a true path (n, k); the model's lags are included up to four times `end` [Hz]."""
     step = closed.step or 1.0
     frequencies = frequencies_of(wanted, step)
     band = Band(min(4.0 * end, 0.45 / step))
@@ -144,10 +144,10 @@ class LearningSettings:
 
 
 def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
-    """Learn the command for a true path (n, f), at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each pass.
+    """Learn the command path + d for a true path (n, f) at rest at both ends. After each pass, d becomes Q (d + gain P^^-1 e).
 
-    `run(path, number)` simulates pass `number` along a commanded path, and returns the measured poses (n, f). Raises `DesignError` as
-    `robust_band` does.
+    `run(path, number)` simulates pass `number` along a commanded path, and returns the measured poses (n, f). Raises the `DesignError` of
+    `robust_band`.
     """
     robust = robust_band(closed, control, lesson.gain, lesson.spread)
     frequencies = frequencies_of(wanted, closed.step or 1.0)

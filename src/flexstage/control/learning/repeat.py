@@ -27,13 +27,13 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 
 @dataclass(frozen=True, eq=False)
 class Repeater:
-    """Repetitive controller d = z^-P (W d + L e) of the error e: taps `keep` (2m+1,) of W and `teach` (2m+1, f, f) of L.
+    """Repetitive controller d = z^-P (W d + L e) for the error e. `keep` (2m+1,) are the taps of W, `teach` (2m+1, f, f) those of L.
 
-    Both filters are noncausal by m samples, and include the fraction of a sample in the `period` P [samples]. W is the low-pass filter of
-    the `band`. `contraction` is the largest ||W - G L|| over all frequencies, with coordinates scaled to lengths; G are the loop's
-    responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World
-    Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L)
-    z)^-1|| over |z| = 1, the amplification between the harmonics.
+    Both filters are noncausal by m samples. Their taps include the fractional delay if the `period` P [samples] is not a whole number. W is
+    the low-pass filter of the `band`. `contraction` is the largest ||W - G L|| over all frequencies, with rotations scaled to lengths; G
+    denotes the loop's responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano
+    et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest
+    amplification between the harmonics: the maximum of ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1.
     """
 
     period: float
@@ -58,8 +58,9 @@ class Repeater:
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
     """Design the filters for a `period` [s] in the widest band in which errors decrease, for relative mode shifts up to `spread`.
 
-    `gain` multiplies the inverse model of the loop. Finite filters also act beyond their band; therefore the band is narrower than for
-    iterative learning. Raises `DesignError` as `robust_band` does, and for a period too short for filters whose band contains a harmonic.
+    `gain` multiplies the inverse model of the loop. Finite filters also act outside their band; therefore the band is narrower than for
+    iterative learning. Raises the `DesignError` of `robust_band`, or one for a period so short that no usable band contains its first
+    harmonic.
     """
     step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
@@ -186,7 +187,7 @@ def repeat(
     """Simulate a run along a true path (n, f), with corrections from the errors of previous periods.
 
     `advance` continues the run with further commanded poses, and returns the measured poses. Only errors within the window of `asked` are
-    used; after the window the correction fades out. Raises `DesignError` as `repeater` does.
+    used; after the window the correction fades out. Raises the `DesignError` of `repeater`.
     """
     found = repeater(closed, control, asked.period, gain, spread)
     target = wanted_readings(closed, control, wanted, found.band.end)

@@ -19,10 +19,11 @@ _TAPER = 0.75
 
 
 def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
-    """Compute responses (f, k, k) from reference to measured pose, with all mode frequencies higher by a relative `offset`.
+    """Compute responses (f, k, k) from the reference to the measured pose, with all mode frequencies raised by a relative `offset`.
 
     y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r, for the sampled plant P and the controller's responses K from error, pose and reference. The
-    mode frequencies are raised by scaling time, so that lags also become shorter. Hold and delay of a sampled plant are unchanged.
+    mode frequencies are raised by scaling the time of the plant; its lags therefore become shorter. Hold and delay of a sampled plant are
+    unchanged.
     """
     P = pose_plant(plant, offset).sweep(frequencies)
     back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
@@ -30,7 +31,7 @@ def readings(plant: Plant, control: System, frequencies: Array, offset: float = 
 
 
 def motions(closed: Loop, frequencies: Array) -> Array:
-    """Compute responses (f, k, k) from reference to the true motion relative to the ground."""
+    """Compute responses (f, k, k) from the reference to the true motion relative to the ground."""
     names = closed.plant.coordinates.names
     whole = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in names])
     return whole.sweep(frequencies)
@@ -43,12 +44,12 @@ class Band:
     end: float
 
     def gains(self, frequencies: Array) -> Array:
-        """Compute the gains Q (f,), from 1 to 0."""
+        """Compute the filter's gains Q (f,) at some frequencies."""
         share = np.clip((np.asarray(frequencies) / self.end - _TAPER) / (1.0 - _TAPER), 0.0, 1.0)
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
     def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
-        """Blend responses R with a constant `beyond` the band: Q R + (1 - Q) I `beyond` (f, k, k), with the gains Q."""
+        """Compute Q R + (1 - Q) I `beyond` (f, k, k) with the gains Q: the responses R in the band, and a constant `beyond` the band."""
         share = self.gains(frequencies)
         inside = share > 0.0
         responses, share = respond(frequencies[inside]), share[inside, None, None]
@@ -71,11 +72,11 @@ def frequencies_of(path: Array, step: float) -> Array:
 
 
 def through(responses: Array, path: Array) -> Array:
-    """Filter a path (n, k) by responses (n/2+1, k, k) at the frequencies of its transform. The path starts at zero and ends at rest.
+    """Filter a path (n, k) by frequency responses (n/2+1, k, k), see `frequencies_of`. The path starts at zero and ends at rest.
 
-    The differences of the path are transformed, because they end at zero. An inverse may have poles outside the unit circle. Its response
-    on the circle is then the sum of a stable component forward in time and an antistable component backward in time (Devasia, Chen & Paden,
-    IEEE Trans. Autom. Control 41 (1996) 930). The result therefore starts before the path.
+    The differences between successive points are transformed, because they end at zero. The response of an inverse model may have poles
+    outside the unit circle. It is then the sum of a stable component forward in time and an antistable component backward in time (Devasia,
+    Chen & Paden, IEEE Trans. Autom. Control 41 (1996) 930). Therefore the filtered path starts before the path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

@@ -36,11 +36,11 @@ class Edge:
 
 @dataclass(frozen=True)
 class DiskMargin(InNotebook):
-    """Disk margin of all loops: simultaneous factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2), |d_i| < alpha, s the `skew`.
+    """Disk margin alpha of all loops, which have simultaneous factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2); s is the `skew`.
 
-    Stability is guaranteed for |d_i| < `guaranteed`, at every frequency if `covered` (else at the sampled frequencies). Some d_i of
-    magnitude `reached` >= `guaranteed` make the loop marginally stable at `frequency` [Hz]. `loops` are the varied loops. Each of them
-    tolerates gain factors from `gain_low` to `gain_high`, or phases up to `phase` [rad], independently of the others.
+    Stability is guaranteed for all |d_i| < `guaranteed`; the proof covers every frequency if `covered`, else only sampled frequencies. Some
+    d_i of magnitude `reached` >= `guaranteed` make the loop marginally stable at `frequency` [Hz]. `loops` names the varied loops. Each
+    loop tolerates any gain factor from `gain_low` to `gain_high`, or any phase up to `phase` [rad], independently of the other loops.
     """
 
     TABLE: ClassVar[Layout] = Layout("Disk margin, all loops at once", "guaranteed gain_low gain_high phase")
@@ -72,7 +72,7 @@ class DiskMargin(InNotebook):
 
 
 def disk_margin(own: System, skew: float = 0.0) -> Edge:
-    """Compute alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L), exact by `peak`.
+    """Compute the disk margin alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L).
 
     >>> from flexstage.control.example import integral_loop
     >>> whole = sensitivity(open_at(integral_loop(), LoopBreak.POSE))
@@ -84,12 +84,12 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
 
 
 def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
-    """Compute the disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both.
+    """Compute the disk margin of all loops at once. Factors vary at the poses, at the commands, or (`cut` None) at both.
 
-    alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. Upper bound mu <= min over
-    diagonal D of sigma(D M D^-1), lower bound mu >= max over phases U of rho(U M). The upper bound is proved for all frequencies: the
-    Hamiltonian matrix of a D gives the intervals in which sigma is below a level 0.1 % above the highest value found. Further D follow
-    until these intervals cover all frequencies. Raises `DesignError` for an unstable loop.
+    The margin is alpha = 1/sup mu(S + (skew - 1)/2), where mu is the structured singular value for a complex factor in every loop. An upper
+    bound of mu is the minimum of sigma(D M D^-1) over diagonal D, a lower bound the maximum of rho(U M) over phases U. The upper bound is
+    proved for all frequencies: for one D, a Hamiltonian matrix gives the intervals in which sigma is below a level, 0.1 % above the highest
+    value found. Further matrices D are computed until such intervals cover all frequencies. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()

@@ -35,7 +35,8 @@ _LEAST_LINES = 16
 class Reading:
     """Measured margin: its `value`, and 95 % confidence limits `low` and `high` (None: unknown).
 
-    `fitted` is the value of the identified plant, `predicted` of the stage's model, both at the same frequency lines (NaN: no limit).
+    `fitted` is the margin of the identified plant, `predicted` the margin of the stage's model, at the same frequency lines (NaN: no
+    limit).
     """
 
     value: Annotated[float, Heading("measured", digits=4)]
@@ -47,7 +48,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class ReadChannel:
-    """Measured margins of one loop, with the others closed: upper gain factor, `phase` [rad], and the frequency up to which |S_ii| < 1."""
+    """Measured margins of one loop, with the other loops closed: upper gain factor, `phase` [rad], and first frequency of |S_ii| = 1."""
 
     channel: Annotated[str, INNER]
     gain_high: Reading
@@ -74,8 +75,8 @@ class ReadLines:
 class MeasuredMargins(InNotebook):
     """Margins of a loop at the frequency lines of a test: peak of S, and margins by coordinate.
 
-    The peak is the largest singular value, with rotations as lengths. `lines` is the number of frequency lines within `band` [Hz]. Between
-    lines the response is unknown: a narrower peak may be higher.
+    The peak is the largest singular value of S, with rotations scaled to lengths. `lines` is the number of frequency lines within `band`
+    [Hz]. Between the lines, the response is unknown, and a narrow peak may be higher.
     """
 
     band: Annotated[tuple[float, float], FREQUENCY]
@@ -92,14 +93,14 @@ class MeasuredMargins(InNotebook):
 
 
 def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> MeasuredMargins:
-    """Compute margins of a loop on measured responses, with hold and delay: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
+    """Compute the margins of a loop L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}) from measured responses P; H_0 is the response of the hold.
 
-    P comes from local polynomials on the records (`local_responses`), or is the analyser's response. H_0 is the hold's response. Errors of
-    P are assumed to be circular normal. For stored responses their variance is |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th
-    ed., 2010, ch. 9), on the assumption that one input was driven at a time. Confidence limits are quantiles of 100 random draws, about the
-    draws' median or mirrored at the value, whichever is wider. Aliasing from above half the sampling rate is neglected.
+    P is estimated from records with local polynomials (`local_responses`), or is the analyser's response. Errors of P are assumed to be
+    circular normal. For an analyser's response, their variance is |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010,
+    ch. 9), on the assumption that one input was driven at a time. Confidence limits are quantiles of 100 random draws; they are widened if
+    the draws are biased. Aliasing from above half the sampling rate is neglected.
 
-    Uses only lines within the band of the identification, below half the sampling rate.
+    Only frequency lines within the band of the identification and below half the sampling rate are used.
     """
     loop, found = closed.plant.coordinates, seen.found
     step = closed.step or 0.0

@@ -16,8 +16,9 @@ _NOTHING = 1e-300
 class ResponseMargins:
     """Loop margins at frequency lines; `sizes` (f, n) are |S_ii| of each loop with the other loops closed.
 
-    `peak` is the largest singular value of S, with poses as lengths. The stability limits of each loop are the nearest gain factors below
-    and above 1 (`lows`, `gains`), `phases` [rad] and `delays` [s]. `rejections` [Hz] are the first crossings of |S_ii| = 1 (NaN: none).
+    `peak` is the largest singular value of S, with rotations scaled to lengths. Stability limits of each loop are the nearest gain factors
+    below 1 (`lows`) and above 1 (`gains`), the `phases` [rad] and the `delays` [s]. `rejections` [Hz] are the first crossings of |S_ii| = 1
+    (NaN: none).
     """
 
     sizes: Array

@@ -13,8 +13,8 @@ _POWERS = (4.0, 32.0, 256.0, 2048.0)
 def balance(matrices: Array) -> Array:
     """Balance each matrix (f, n, n) by diagonal scaling e^{d_i} M_ij e^{-d_j}. Returns the logarithms d (f, n).
 
-    Osborne's rule: off-diagonal norms of rows and columns become equal. The result is a start value of an optimisation, and often
-    sufficient.
+    By Osborne's rule, off-diagonal norms of rows and columns become equal. The result is a start value for `upper_bound`, and often good
+    enough.
 
     >>> balance(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
     [[-1.151293, 1.151293]]
@@ -44,8 +44,8 @@ def scaled_size(matrix: Array, logs: Array) -> float:
 def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
     """Minimise the largest singular value of e^{d_i} M_ij e^{-d_j} over d; any d gives an upper bound of mu.
 
-    The logarithm is convex in d. Singular values coincide at the minimum, so the norms sum(sigma^2p)^(1/2p) are minimised instead, with
-    increasing p; their gradient is sum w_k (|u_ik|^2 - |v_ik|^2).
+    The logarithm of the singular value is convex in d. At the minimum, several singular values may coincide; therefore the smooth norms
+    sum(sigma^2p)^(1/2p) are minimised instead, with increasing p. Their gradient is sum w_k (|u_ik|^2 - |v_ik|^2).
 
     >>> round(upper_bound(np.array([[0.0, 100.0], [1.0, 0.0]]), np.zeros(2))[0], 6)  # mu is the geometric mean of the two
     10.0
@@ -70,7 +70,7 @@ def _smooth(logs: Array, matrix: Array, power: float) -> tuple[float, Array]:
 def lower_bound(matrix: Array) -> tuple[float, Array]:
     """Maximise the spectral radius of e^{j theta_i} M_ij over theta; any theta gives a lower bound of mu.
 
-    BFGS from several starts: d log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x).
+    The BFGS method with several start values uses the derivatives d log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x).
 
     >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # equal to the largest singular value
     (2.236068, 2.236068)

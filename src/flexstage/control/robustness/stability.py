@@ -27,9 +27,9 @@ _ALIKE = 1e-3
 class Pole:
     """Closed-loop pole with its source.
 
-    `frequency` [Hz] and damping `ratio` -growth / |p| belong to the pole pair, `growth` [1/s] is its growth rate (negative: decay).
-    `source` has the largest participation in the pole (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`, `delayed strokes`),
-    and `share` is this participation. `coordinate` has the largest error, rotations times the stage's length.
+    `frequency` [Hz], damping `ratio` -growth / |p| and growth rate `growth` [1/s] (negative: decay) are those of the pole pair. `source` is
+    the mode or device with the largest participation in the pole (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`, `delayed
+    strokes`); `share` is this participation. `coordinate` has the largest error, after rotations are multiplied by the stage's length.
     """
 
     frequency: Annotated[float, FREQUENCY]
@@ -45,9 +45,9 @@ class Verdict(InNotebook):
     """Stability of a loop: stable if all closed-loop poles decay, with exact hold and delay.
 
     `slowest_pole` is the least stable pole. `poles` (k,) are all poles as rates [1/s] (ln z / T of a sampled loop), least stable first.
-    With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to `gain_high`. For a stable loop this
-    interval contains 1 (0 and infinite: no limit within a factor of 1000). For an unstable loop it is the nearest interval below 1 (NaN:
-    none down to 1/1000). `sentence` summarises the verdict.
+    With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to `gain_high`. For a stable loop, this
+    interval contains 1 (0 and infinite: no limit within a factor of 1000). For an unstable loop, it is the nearest stable interval below 1
+    (NaN: none down to 1/1000). `sentence` summarises the verdict.
     """
 
     stable: bool
@@ -62,9 +62,9 @@ class Verdict(InNotebook):
 def verdict(closed: Loop) -> Verdict:
     """Determine the stability of a loop from the eigenvalues of its closed system.
 
-    A mode's participation in a pole is |left x right eigenvector| summed over its states (Perez-Arriaga, Verghese, Schweppe 1982); modes
-    within 0.1 % of one another count as one source. Gain limits are changes of sign of the growth rate, searched upwards in steps of 8 %,
-    downwards in steps of 40 %.
+    A mode's participation in a pole is the sum of |left x right eigenvector| over the mode's states (Perez-Arriaga, Verghese, Schweppe
+    1982). Modes within 0.1 % of one another in frequency count as one source. At a gain limit, the growth rate changes sign. From a stable
+    gain factor, limits are searched upwards in steps of 8 % and downwards in steps of 40 %.
 
     >>> from flexstage.control.example import integral_loop
     >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).slowest_pole.source
@@ -136,7 +136,7 @@ def _growth(open_loop: System, factor: float) -> float:
 
 
 def require_stable(closed: Loop, what: str) -> None:
-    """Raise `DesignError` if a loop is unstable, so that `what` (margins, rms values) does not exist.
+    """Raise `DesignError` if a loop is unstable; `what` names the quantities that do not exist then (margins, rms values).
 
     The message contains growth rate and source of the least stable pole.
 

@@ -34,9 +34,9 @@ def _grade_disk(alpha: float) -> Mark:
 class ChannelMargins:
     """Stability margins of one loop, with the others closed.
 
-    The loop is stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit), phases up to `phase` [rad] of
-    either sign, and delays up to `delay` [s] (factors e^{-j omega tau}). `disk` is alpha of the balanced disk margin: gain and phase may
-    change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
+    The loop is stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit). It is stable for phases up to
+    `phase` [rad] of either sign, and for delays up to `delay` [s] (factors e^{-j omega tau}). `disk` is alpha of the balanced disk margin:
+    gain and phase may change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -72,16 +72,16 @@ class Margins(InNotebook):
         return {each.channel: each for each in self.channels}
 
     def of(self, channel: str) -> ChannelMargins:
-        """Return the margins of the channel with this name."""
+        """Return the margins of the loop with the name `channel`."""
         return self.loops[channel]
 
 
 @check_arguments
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
-    """Compute margins of one loop at a time, with the others closed; `found` are its `curves` if already known.
+    """Compute margins of one loop at a time, with the other loops closed; `found` are the `curves` at the cut if already known.
 
-    Gain limits are at frequencies where S_ii = 1/(1 + L_i) is real, and below 0 or above 1 (L_i real and negative). Phase and delay limits
-    are where its real part is 1/2 (|L_i| = 1). They are exact to rounding error; the frequencies resolve L_i. `peak` gives alpha_i =
+    Gain limits are at frequencies at which S_ii = 1/(1 + L_i) is real and below 0 or above 1 (L_i is negative). Phase and delay limits are
+    at frequencies at which the real part of S_ii is 1/2 (|L_i| = 1). All limits are exact to rounding error. The disk margin is alpha_i =
     1/||S_ii - 1/2|| (Seiler, Packard, Gahinet, IEEE Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
@@ -131,7 +131,7 @@ def _has_direct_gain(own: complex, step: float | None) -> bool:
 
 @dataclass(frozen=True)
 class Peaks(InNotebook):
-    """Peaks of S = (I + L)^-1 and T = I - S at a cut: largest singular values, with poses as lengths and commands unscaled."""
+    """Peaks of S = (I + L)^-1 and T = I - S at a cut: largest singular values, with rotations scaled to lengths and commands unscaled."""
 
     cut: LoopBreak
     sensitivity: Peak
@@ -139,7 +139,7 @@ class Peaks(InNotebook):
 
 
 def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
-    """Compute the H-infinity norms of S and T by `peak`. Raises `DesignError` for an unstable loop.
+    """Compute the H-infinity norms of S and T. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> peaks(integral_loop(), LoopBreak.POSE).sensitivity.value > 1.0
@@ -155,7 +155,7 @@ def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
 
 @dataclass(frozen=True)
 class ShiftedPeak:
-    """Larger peak sensitivity Ms of two plants, with all modes shifted up and down by a relative `shift`; infinite if unstable."""
+    """Larger peak sensitivity Ms of two plants: with all modes shifted up and down by a relative `shift`; infinite if one is unstable."""
 
     TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted up or down", "peak", head="shift")
 
@@ -164,7 +164,7 @@ class ShiftedPeak:
 
 
 def shifted_peaks(closed: Loop, shifts: Iterable[float] = (0.0, 0.02, 0.05, 0.1)) -> tuple[ShiftedPeak, ...]:
-    """Compute the peak sensitivity of a sampled loop at the pose for relative `shifts` of all modes, up and down.
+    """Compute the peak sensitivity at the pose of a sampled loop, with all modes shifted up and down by each of the relative `shifts`.
 
     Only the time scale of the plant changes, not the time scale of the controller.
 
@@ -184,7 +184,7 @@ def _shifted_peak(closed: Loop, offset: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Bandwidths(InNotebook):
-    """Bandwidths [Hz] (n,) by coordinate, each the lowest frequency of a crossing (NaN: none).
+    """Bandwidths [Hz] (n,) by coordinate: the lowest frequencies at which magnitudes cross a limit (NaN: none).
 
     At `tracking`, the true motion falls 3 dB below its reference. At `complementary`, T_ii falls 3 dB below 1. At `rejection`, |S_ii| rises
     through 1: above it, the loop amplifies disturbances. At `half_rejection`, |S_ii| rises through -3 dB.
@@ -209,7 +209,7 @@ class Bandwidths(InNotebook):
 
 
 def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
-    """Compute bandwidths by coordinate; `found` are the `curves` at the pose if already known.
+    """Compute the bandwidths of all coordinates; `found` are the `curves` at the pose if already known.
 
     Raises `DesignError` for an unstable loop.
 

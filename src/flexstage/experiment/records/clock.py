@@ -21,7 +21,7 @@ TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min":
 
 
 def round_nominal(value: float, uncertainty: float) -> float:
-    """Find the number that agrees with a rounded value and has the fewest digits, itself or in its inverse.
+    """Find the number that agrees with a rounded value and has the fewest digits; the digits of its inverse also count.
 
     `uncertainty` is the relative uncertainty of the value.
 
@@ -54,7 +54,7 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """Sampling clock: rate in Hz, first time in s, intervals (start, stop) of samples without gaps, start times of the intervals in s."""
+    """Sampling clock: rate in Hz, first time in s, intervals without gaps as sample numbers (start, stop), and their start times in s."""
 
     rate: float
     start: float
@@ -70,8 +70,8 @@ class Clock:
 def read_clock(times: Array, where: str) -> Clock:
     """Determine the sampling clock from times (n,) in s; raises `DesignError` for too few, non-finite, repeated or uneven times.
 
-    A time step is a gap if it differs from the median step by more than half of it. The rate follows from the other steps, rounded within
-    the precision of the times.
+    A time step is a gap if it differs from the median step by more than half the median step. The rate follows from the other steps,
+    rounded within the precision of the times.
 
     >>> read_clock(np.array([0.0, 0.1, 0.2, 0.7, 0.8]), "a.csv").stretches
     ((0, 3), (3, 5))
@@ -89,9 +89,10 @@ def read_clock(times: Array, where: str) -> Clock:
 
 
 def determine_clock(samples: Samples, options: Options, where: str, *, scale: float = 1.0, stated: float | None = None) -> Clock:
-    """Determine the sampling clock from the first column of samples, times in units of `scale` [s]; raises `DesignError` if it is faulty.
+    """Determine the sampling clock from the first column of samples: times in units of `scale` [s].
 
-    A rate `stated` in the file [Hz] replaces the rate that follows from the times; both must agree within a thousandth.
+    A rate `stated` in the file [Hz] replaces the rate that follows from the times; both rates must agree within a thousandth. Raises
+    `DesignError` for faulty times.
 
     >>> from flexstage.experiment.records.record import InMemory
     >>> times = InMemory(np.array([[0.0], [0.1], [0.2], [0.7], [0.8]]))

@@ -53,7 +53,7 @@ class RecordRequirements(CheckedFields):
 
 @dataclass(frozen=True)
 class Fault:
-    """Fault of a record: the tolerance that accepts it (`None`: it cannot be accepted), the channel, and the message."""
+    """Fault of a record: its `kind`, the tolerance that accepts it (`None`: always an error), the channel, and the message."""
 
     kind: FaultTolerance | None
     channel: str
@@ -74,7 +74,7 @@ class Examination(InNotebook):
         return tuple(fault.finding for fault in self.faults)
 
     def channels(self, kinds: Iterable[FaultTolerance]) -> frozenset[str]:
-        """Return the names of channels with faults of these kinds."""
+        """Return the names of channels with a fault of one of these `kinds`."""
         known = frozenset(kinds)
         return frozenset(fault.channel for fault in self.faults if fault.kind in known and fault.channel)
 
@@ -86,8 +86,8 @@ _NEEDS = RecordRequirements()
 def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examination:
     """Find all faults of a record.
 
-    Checks non-finite samples; dead, constant, frozen, clipped or coarsely quantised channels; missing and unknown units; dependent inputs;
-    wrong roles and names; duration and sampling rate.
+    Faults are non-finite samples; dead, constant, frozen, clipped or coarsely quantised channels; missing and unknown units; dependent
+    inputs; wrong roles and names; an insufficient duration or sampling rate.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> noise = np.random.default_rng(1).normal(size=(4096, 2)) * [1.0, 0.0]
@@ -110,7 +110,7 @@ def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examin
 def usable_record(
     record: Record, accept_faults: frozenset[FaultTolerance] = frozenset(), requirements: RecordRequirements = _NEEDS
 ) -> Record:
-    """Return the usable record: unchanged without faults, else without the faulty data that `accept_faults` allows to omit.
+    """Return the usable record, without the faulty data that may be omitted according to `accept_faults`.
 
     Dead channels, dependent inputs, and channels without a role or absent from the stage are removed. If a record has non-finite samples,
     only its longest interval of finite samples is kept. Raises `DesignError` with every fault that is not accepted.

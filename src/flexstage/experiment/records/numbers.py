@@ -22,10 +22,10 @@ _KEPT = 2048
 class Numbers:
     """Statistics of the samples of one channel, accumulated block by block.
 
-    `broken` of `count` samples are not finite; `first_broken` is the index of the first. The longest interval of constant value has `still`
-    samples of value `still_at` from sample `still_from`. `lows` and `highs` are the lowest and highest samples, enough to distinguish
-    clipping from a tail of the distribution. `step` is the smallest nonzero step. `pairs` are the lowest and the highest value that occur
-    in two successive samples.
+    `broken` of `count` samples are not finite; `first_broken` is the index of the first such sample. The longest interval of constant value
+    starts at sample `still_from`, and has `still` samples with the value `still_at`. `lows` and `highs` are the lowest and highest samples,
+    enough to distinguish clipping from a tail of the distribution. `step` is the smallest nonzero step. `pairs` are the lowest and the
+    highest of all values that two successive samples share.
     """
 
     count: int = 0
@@ -106,7 +106,7 @@ class Numbers:
 
 @dataclass(frozen=True, eq=False)
 class RecordNumbers:
-    """Statistics of all channels, longest interval `stretch` (start, stop) of finite samples, unscaled mean cross-spectra of the inputs."""
+    """Statistics of all channels, the longest interval `stretch` (start, stop) of finite samples, and unscaled input cross-spectra."""
 
     channels: tuple[Numbers, ...]
     stretch: tuple[int, int]
@@ -170,8 +170,8 @@ def count_ends(values: Array) -> tuple[int, int]:
 def explained_share(spectra: Array) -> Array:
     """Compute the fraction (m,) of each input's power that the other inputs explain, from cross-spectra G (f, m, m).
 
-    It is the power-weighted multiple coherence 1 - (sum of 1/(G^-1)_ii)/(sum of G_ii) (Bendat and Piersol, Random Data, 4th edition,
-    section 7.3). Delays between inputs have no influence if they are short relative to a segment.
+    This fraction is the power-weighted multiple coherence 1 - (sum of 1/(G^-1)_ii)/(sum of G_ii) (Bendat and Piersol, Random Data, 4th
+    edition, section 7.3). Delays between inputs that are short relative to a segment have no influence.
 
     >>> explained_share(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
     [0.64, 0.64]

@@ -93,9 +93,9 @@ class Arrays(CheckedFields):
 class Options(CheckedFields):
     """User options for reading a file.
 
-    `inputs` and `outputs` are names or patterns (`u*`, `S?`) of channels. If only one of them is specified, all other channels have the
-    other role. `only` (option `--channels`) selects the channels to use. `rate` in Hz replaces the times in the file. `units` are pairs of
-    a name or pattern and a unit. `arrays` assigns the file's arrays. `accept_faults` are the accepted faults.
+    `inputs` and `outputs` are names or patterns (`u*`, `S?`) of channels. If only `inputs` is specified, all other channels are outputs,
+    and vice versa. `only` (option `--channels`) selects the channels to use. `rate` in Hz replaces the times in the file. `units` are pairs
+    of a name or pattern and a unit. `arrays` assigns the file's arrays. `accept_faults` are the accepted faults.
     """
 
     inputs: tuple[str, ...] = ()
@@ -109,7 +109,7 @@ class Options(CheckedFields):
 
 
 def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:
-    """Assign roles and units to channels: from the user, else from the file; roles, if still unknown, by channel names.
+    """Assign roles and units to channels. The user's options precede the file; roles that are still unknown follow from the channel names.
 
     Raises `DesignError` for patterns that match no channel and for channels with both roles.
 
@@ -143,7 +143,7 @@ def matches(name: str, patterns: Iterable[str]) -> bool:
 
 
 def number_names(names: Iterable[str]) -> tuple[str, ...]:
-    """Number equal names to make them unique.
+    """Append numbers to equal names, so that all names are unique.
 
     >>> number_names(["acc", "acc", "u"])
     ('acc 1', 'acc 2', 'u')

@@ -126,7 +126,7 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """Kind of data: `record`, in contrast to `responses`."""
+        """Kind of data: `record` (`responses` for frequency responses)."""
         return "record"
 
     @property
@@ -193,7 +193,7 @@ class Record(InNotebook, CheckedFields):
         return replace(self, start=self.start + start / self.rate, samples=samples)
 
     def blocks(self, size: int, overlap: int = 0) -> Iterator[Array]:
-        """Iterate over blocks (size, channels), each starting with the last `overlap` samples of the previous one. The last may be short.
+        """Iterate over blocks (size, channels), each with the last `overlap` samples of the previous block. The last block may be short.
 
         >>> five = Record((Channel("a"),), 1.0, InMemory(np.arange(5.0)[:, None]))
         >>> [block[:, 0].tolist() for block in five.blocks(3, overlap=1)]
@@ -248,7 +248,7 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """Kind of data: `responses`, in contrast to `record`."""
+        """Kind of data: `responses` (`record` for samples)."""
         return "responses"
 
     @property
@@ -288,7 +288,7 @@ class Responses(InNotebook, CheckedFields):
 
 
 def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
-    """Wrap a record so that each block read reports the number of samples up to its end to `tell`, for progress bars.
+    """Return a record that reports its reading for progress bars: after each block, `tell` is called with the number of samples read.
 
     >>> told = []
     >>> long = report_reading(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)

@@ -52,9 +52,9 @@ class Segments(CheckedFields):
 class Spectra:
     """One-sided spectral densities at `frequencies` (f,) in Hz: `xx` (f, m, m), `yx` (f, p, m) and `yy` (f, p, p).
 
-    `yx` is E[Y X^H]: entry (i, j) is output i times the conjugate of input j. `xx` and `yy` are defined in the same way. The paper's
-    G_ij = E[X_i* Y_j] (Eq. 29) is yx[j, i]. The unit of an entry is the product of the units of its two channels, per Hz. `averages` is the
-    number of segments; `independent` is the equivalent number of segments without overlap.
+    `yx` is E[Y X^H]: entry (i, j) is output i times the conjugate of input j. `xx` is E[X X^H], and `yy` is E[Y Y^H]. The paper's G_ij =
+    E[X_i* Y_j] (Eq. 29) is yx[j, i]. The unit of an entry is the product of the units of its two channels, per Hz. `averages` is the number
+    of segments; `independent` is the equivalent number of segments without overlap.
     """
 
     frequencies: Array
@@ -188,7 +188,7 @@ def _accumulate(record: Record, size: int, segments: Segments) -> tuple[Array, i
 def pool(parts: Sequence[Spectra]) -> Spectra:
     """Combine spectra of several records, weighted by their averages; an input missing in a record counts as zero there.
 
-    Inputs are in order of their first occurrence. All records must have equal frequency lines and outputs.
+    Inputs are in order of their first occurrence. All records must have the same frequency lines and the same outputs.
 
     >>> pool([example_spectra(), example_spectra()]).averages
     14

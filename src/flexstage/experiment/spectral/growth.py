@@ -13,12 +13,12 @@ _RATIOS = np.geomspace(1e-6, 1e6, 121)
 
 
 def noise_growth(frequencies: Array, responses: Array) -> Array:
-    """Estimate the factor g (p,) of the noise variance a (1 + g |H|^2) for every output of responses (f, p, m); zero if not significant.
+    """Estimate the factor g (p,) in the noise variance a (1 + g |H|^2) of every output of responses (f, p, m); an insignificant g is zero.
 
-    Shaker steps, analyser ranges and files of few digits cause errors proportional to the response. To estimate the variance at a line, a
-    rational function is fitted to nine lines: order two over one, with a common denominator (McKelvey & Guerin 2012). The residual has six
-    complex degrees of freedom. g is the maximum-likelihood value for these variances. The method needs no modal model, so a mode missing
-    in the model is not mistaken for noise.
+    Amplitude steps of a shaker, ranges of an analyser and files with few digits cause errors proportional to the response. To estimate the
+    variance at a frequency line, a rational function is fitted to nine lines. Its numerator has order two, and its common denominator has
+    order one (McKelvey & Guerin 2012). The residual has six complex degrees of freedom. g is the maximum-likelihood value for these
+    variances. The method needs no modal model, so a mode missing in the model is not mistaken for noise.
 
     >>> lines, draw = np.linspace(9.0, 11.0, 400), np.random.default_rng(0).standard_normal((2, 400, 1, 1))
     >>> one, noise = 1.0 / (1j * (lines - 10.0) + 0.1)[:, None, None], 0.003 * (draw[0] + 1j * draw[1])

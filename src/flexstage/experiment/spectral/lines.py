@@ -24,10 +24,10 @@ BLOCK = 12_000_000
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Transform lines of one block: `frequencies` (k,) in Hz, `drive` (k, n) and `outputs` (k, p).
+    """Fourier transform of one block of a record at its `frequencies` (k,) in Hz: `drive` (k, n) and `outputs` (k, p).
 
-    The scale is such that white noise has the same variance at every line as in time. `columns` (n,) are the indices of the drive's
-    columns, inputs and a transient, among the columns of all blocks.
+    The transform is scaled so that white noise has the same variance at every frequency as in time. The columns of `drive` are the inputs
+    and a transient; `columns` (n,) are their indices among the columns of all blocks.
     """
 
     frequencies: Array
@@ -41,8 +41,8 @@ class Cells:
     """Sums over frequency cells from `low` to `high` (c,) in Hz, with the block number (c,) and the `count` of lines (c,) of each cell.
 
     Z = P_a(x) U_i is the product of Legendre polynomials, a = 0..7, and the block's drive. The sums are `own` (c, 8, n, 8, n) = Z^H Z,
-    `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. The drive of a block has the columns `columns[block]` among all `width`
-    columns.
+    `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. Of the `width` columns of all blocks, the drive of one block has the
+    columns `columns[block]`.
     """
 
     low: Array
@@ -76,10 +76,11 @@ class Cells:
 
 
 def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
-    """Transform a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), after subtraction of the mean.
+    """Compute Fourier transforms of a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), after subtraction of the mean.
 
     The record is divided into at least `least` blocks, or as many as memory requires. `inputs` are the column indices of the record's
-    inputs in the drive. The transient of the first block has the index `first`, the next block's `first` + 1, and so on.
+    inputs in the drive. The transient of the first block has the column index `first`, the transient of the next block `first` + 1, and so
+    on.
 
     >>> from flexstage.experiment.records.record import Channel, Role, in_memory
     >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 8.0, np.eye(8)[:, :2])
@@ -113,7 +114,7 @@ def block_count(record: Record, least: int = 1) -> int:
 def edges(poles: Array, low: float, high: float) -> Array:
     """Compute limits of cells [Hz] from `low` to `high`.
 
-    The width of a cell is a fixed fraction of its distance to the nearest of `poles` (complex, in Hz).
+    The width of a cell is a fixed fraction of the distance between the cell and the nearest of the `poles` (complex, in Hz).
 
     >>> edges(np.array([-1.0 + 10j]), 9.0, 11.0).round(2).tolist()
     [9.0, 9.57, 10.0, 10.4, 10.83, 11.0]

@@ -28,7 +28,7 @@ class WindowLeakage:
     seconds: float
 
     def functions(self, frequencies: Array, poles: Array) -> tuple[Array, Array]:
-        """Compute the smeared functions 1/(j f - p) (..., k) and their derivatives by p, for poles p (k,) in Hz (rad/s over 2 pi).
+        """Compute the smeared functions 1/(j f - p) (..., k) and their derivatives with respect to p, for complex poles p (k,) in Hz.
 
         >>> sharp = 1 / (1j * 12.0 - (-1 + 10j))
         >>> smeared = WindowLeakage(Window.HANN, 1000.0).functions(np.array([12.0]), np.array([-1 + 10j]))[0]

@@ -51,7 +51,7 @@ def h2(spectra: Spectra) -> Responses:
 def spectral_ratio(spectra: Spectra) -> Responses:
     """Compute the spectral ratio T_ij = G_ij / G_ii of the paper (Shin & Moon, Eq. 29), arranged as output over input.
 
-    The ratio equals H1 for a single input or uncorrelated inputs. For correlated inputs it is not a transfer function.
+    The ratio equals H1 for a single input or uncorrelated inputs. For correlated inputs, the ratio is not a transfer function.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> spectral_ratio(example_spectra()).values[3].round(9).real.tolist()
@@ -74,8 +74,8 @@ def ordinary_coherence(spectra: Spectra) -> Array:
 def multiple_coherence(spectra: Spectra) -> Array:
     """Compute the multiple coherence (f, p), the fraction of every output's power that all inputs explain (Bendat & Piersol, ch. 7).
 
-    It is H1 G_xx H1^H / G_yy. For outputs of noise only, it is about the number of inputs over the number of independent averages, not
-    zero.
+    The coherence is H1 G_xx H1^H / G_yy. If an output is only noise, its estimated coherence is not zero, but about the number of inputs
+    divided by the number of independent averages.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> multiple_coherence(example_spectra())[3].round(9).tolist()
