@@ -18,9 +18,9 @@ from flexstage.parts.voice_coil import VoiceCoil
 
 @dataclass(frozen=True)
 class Section:
-    """Section of a catalogue: entries of one class by name, as tables of a design file under `key`.
+    """Section of a catalogue: the entries of one class by name. Each entry is a table, as in a design file under `key`.
 
-    `kind` is the kind of part; None outside of `parts`.
+    `kind` is the kind of part, or None if the entries are not parts.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Catalogue:
     sources: Mapping[str, str]
 
     def section(self, record: type) -> Section | None:
-        """Return the section of a class; `None` if there is none."""
+        """Return the section of a class; `None` if the catalogue has no such section."""
         return next((section for section in self.sections if section.record is record), None)
 
     def extended(self, raw: Mapping[str, Any]) -> Catalogue:

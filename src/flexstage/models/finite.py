@@ -38,7 +38,7 @@ _RANK = 1e-9
 class FinitePose(CheckedFields):
     """Pose after finite motion: `displacement` (..., 3) [m] of the reference point, `rotation_vector` (..., 3) [rad], in stage axes.
 
-    Both are relative to the nominal position. For small motions, they are the components of a twist.
+    Displacement and rotation vector are relative to the nominal position. For small motions, they are the components of a twist.
     """
 
     displacement: Array
@@ -56,8 +56,8 @@ class FiniteMotion:
 
     - `strokes` (..., n) [m] in the order of `actuators`;
     - `pose` of the platform at its reference point;
-    - `bodies`: poses of all bodies at their reference points. Bodies with a free internal mode have the smallest rotation; this pose does
-      not determine the reading of a gauge on such a body (see `Kinematics.sensing`).
+    - `bodies`: poses of all bodies at their reference points. The pose of a body with a free internal mode has the smallest possible
+      rotation, and does not determine the reading of a gauge on this body (see `Kinematics.sensing`).
     - `residual` (...): largest constraint error [m, rotations times `length`];
     - `iterations`: number of steps.
     """
@@ -133,7 +133,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
     """Compute the platform pose for strokes (..., n) [m] in the order of `kinematics.actuators`, from the nominal position.
 
     The poses of all bodies are computed by Newton's method. Leaves and rods with end deflection w and slope t shorten by 0.6 w^2/L - 0.1 w
-    t + L t^2/15, as in the beam constraint model (Awtar, Slocum & Sevincer 2007). Other links have fixed pivots.
+    t + L t^2/15, as in the beam constraint model (Awtar, Slocum & Sevincer 2007). All other links are modelled with fixed pivots.
 
     Raises `DesignError` if the strokes do not determine the platform's motion or the iteration does not converge.
 
@@ -152,7 +152,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
 def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
     """Compute the strokes that move the platform's reference point to `pose`, in the components named in `kinematics.coordinates`.
 
-    The method, the model of the links and the errors are as for `forward_kinematics`.
+    The method, the model of the links and the possible errors are those of `forward_kinematics`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -41,9 +41,9 @@ from flexstage.parts.stated import Stated
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """Required inequality of two values of a part: `small`, the value of `field`, must be below `large`, described by `other`.
+    """Required inequality of two values of a part: the value `small` of `field` must be below the value `large`, described by `other`.
 
-    If not `strict`, the values may be equal.
+    If not `strict`, the two values may be equal.
     """
 
     field: str
@@ -73,12 +73,12 @@ class Elastic(Description):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations between its values."""
+        """Order relations between the part's values."""
         yield from ()
 
     @property
     def push(self) -> Number | None:
-        """Preload [N] along x that pushes its ends apart; negative if it pulls them together."""
+        """Preload [N] along x that pushes the part's ends apart; negative if it pulls the ends together."""
         return None
 
     @property
@@ -87,7 +87,7 @@ class Elastic(Description):
         return None
 
     def stated(self, material: Material | None) -> Stated | None:  # noqa: ARG002  (kinds that are known by a material need it)
-        """Return the specified matrices between its ends; `None` for a part with a shape."""
+        """Return the specified matrices between the part's ends; `None` for a part with a shape."""
         return None
 
     @property
@@ -97,12 +97,12 @@ class Elastic(Description):
 
     @property
     def mirrored(self) -> Elastic | None:
-        """Mirror image in the x-z plane; `None` if the kind has none. Instances with such a part cannot be mirrored."""
+        """Mirror image in the x-z plane. If it is `None`, instances with this part cannot be mirrored."""
         return None
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Other errors of its values, by field."""
+        """Errors of the part's values, apart from their order relations."""
         yield from ()
 
 
@@ -114,8 +114,8 @@ def reversed_or_none(value: Number | None) -> Number | None:
 class Shaped(Elastic):
     """Part with a shape: x axis along the part, origin at its centre, symmetric about the three coordinate planes.
 
-    A kind implements `span` and `throat`. Defaults are for a constant section; `Profiled` parts override them. A `slender` part bends along
-    its whole length: its ends may shift sideways.
+    Each kind of part implements `span` and `throat`. The other properties have defaults for a constant section; `Profiled` parts override
+    these defaults. A `slender` part bends along its whole length: its ends may shift sideways.
     """
 
     material: str
@@ -123,12 +123,12 @@ class Shaped(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether its thinnest section is axisymmetric."""
+        """Whether the part's thinnest section is axisymmetric."""
         return self.throat.is_axisymmetric
 
     @property
     def bends_both_ways(self) -> bool:
-        """Whether it has ideal rotations about both y and z."""
+        """Whether the part has ideal rotations about both y and z."""
         return {Freedom.RY, Freedom.RZ} <= set(self.intended)
 
     @property
@@ -158,12 +158,12 @@ class Shaped(Elastic):
 
     @property
     def has_arc(self) -> bool:
-        """Whether it is thinnest at a single station, not over a length."""
+        """Whether the part is thinnest at a single station, not over a length."""
         return False
 
     @property
     def closing(self) -> float:
-        """Angle [rad] at which the faces of its cuts touch, for the first design; infinite without a cut."""
+        """Rotation [rad] at which the two faces of a cut touch, for the first design; infinite without a cut."""
         return np.inf
 
     @property
@@ -207,7 +207,7 @@ class Profiled(Shaped):
 
     @property
     def is_prismatic(self) -> bool:
-        """Whether its profile is straight."""
+        """Whether the part's profile is straight."""
         return isinstance(self.profile, Straight)
 
     @property
@@ -217,7 +217,7 @@ class Profiled(Shaped):
 
     @property
     def closing(self) -> float:
-        """Angle [rad] at which the faces of its cuts touch, from width and depth of a cut."""
+        """Rotation [rad] at which the two faces of a cut touch, computed from the cut's width and depth."""
         return closing(self.profile, self.thickness)
 
     @property
@@ -227,7 +227,7 @@ class Profiled(Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: fillets and the arc of the tip are within the length; the stations of a table increase from the middle."""
+        """Order relations: fillets, or the arc of a V's tip, fit into the length; the stations of a table increase from the middle."""
         if isinstance(self.profile, Filleted):
             advice = "Two fillets require 2 r of the length: increase the length or reduce the radius"
             yield Order("profile.radius", self.profile.radius, 0.5 * self.profile.length, "half the length", advice, strict=False)

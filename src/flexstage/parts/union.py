@@ -102,7 +102,7 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """Yield densities and moments that correct the sum over a body's solids for their common volumes (most are negative).
 
     A subtracted solid removes its intersection with other solids of its material: P minus H is the union of P and H, minus H. Raises
-    `DesignError` if a common volume cannot be computed: of different materials, or of outlines other than prisms along one axis.
+    `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not prisms along one axis.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity
@@ -302,7 +302,7 @@ def _extruded(section: Moments, low: Array, high: Array) -> Moments:
 
 
 def polygon_moments(corners: Array, height: Array) -> Moments:
-    """Compute moments of a prism over a counter-clockwise polygon (..., n, 2), half of its `height` on either side (Green's theorem).
+    """Compute moments of a prism with a counter-clockwise polygon (..., n, 2) as mid-plane and this `height` (Green's theorem).
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> float(polygon_moments(square, np.asarray(2.0)).volume)

@@ -53,7 +53,7 @@ class CoilSide(Enum):
 
 
 class Coil(ThrustActuator):
-    """Current-driven coil in the field of a magnet, along or about x: limits, heat and damping."""
+    """Limits, heat and damping of a coil in the field of a magnet, with a force along x or a torque about x."""
 
     input = CURRENT
     peak_current: Number | None
@@ -182,15 +182,16 @@ class Coil(ThrustActuator):
 
 @dataclass(frozen=True, eq=False)
 class VoiceCoil(Coil):
-    """Voice coil along x: force = `force_constant` x current between two bodies. A positive force pushes them apart.
+    """Voice coil along x: force = `force_constant` x current between two bodies. A positive force pushes the bodies apart.
 
-    `mass` is the coil's mass, on the body selected by `coil`; `magnet_mass` is the magnet's mass, on the other body. Both are point masses
-    at the link's centre. `stiffness` is the magnets' stiffness along x (negative: unstable about the middle). `damping` is the coil's
-    damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of
-    motion along x with a constant `force_constant`, half of it on each side of the middle.
+    `mass` is the coil's mass, on the body selected by `coil`; `magnet_mass` is the magnet's mass, on the other body. Both masses are point
+    masses at the link's centre. `stiffness` is the magnets' stiffness along x (negative: unstable about the middle). `damping` is the
+    coil's damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range
+    of motion along x with a constant `force_constant`, half of it on each side of the middle.
 
-    `temperature_rise` is the coil's limit relative to its surroundings, and `thermal_resistance` the thermal resistance between them.
-    `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
+    `temperature_rise` is the largest permitted temperature difference between coil and surroundings; `thermal_resistance` is the thermal
+    resistance between them. `duty` is the duty cycle of the current in short use. The input is the static current, which is V/R for a
+    voltage drive.
 
     The model neglects the change of R with temperature, saturation, and the current lag L/R of a voltage drive (significant above R / (2 pi
     L)).

@@ -30,7 +30,8 @@ _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "
 def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
     """Build a JSON document: kind, description, model, version, warnings, default values, then the `body`.
 
-    `mechanism` is `None` if a record is the only input. `body` is a result, or a mapping of results. `more` are warnings about the result.
+    `mechanism` is `None` if a record is the only input. `body` is one result, or maps names to results. `more` are warnings about the
+    result.
 
     >>> envelope("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
     'stage'
@@ -65,7 +66,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
 
 
 def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
-    """Return the results of an analysis by the name of their command; `None` for results that the model or the stage does not have."""
+    """Return the results of an analysis, by name of the command; results that the model or the stage does not have are `None`."""
     damping = None if analysis.linear is None else analysis.linear.damping
     return {
         "mapping": analysis.kinematics,
@@ -115,7 +116,7 @@ def stiffness_body(
     mass: MassMatrix | None = None,
     missing: Mapping[str, str] | None = None,
 ) -> SideBySide:
-    """Return the JSON body of statics, mass, deflection under permanent load, and stiffness by DOF (of fewer than six DOFs)."""
+    """Return the JSON body of statics, mass, deflection under permanent load, and stiffness by DOF for fewer than six ideal motions."""
     reasons = {} if freedoms is not None else {"freedoms": (missing or {}).get("freedoms", _UNSORTED)}
     reasons |= {} if deflection is not None else {"dead_load": _UNLUMPED}
     return SideBySide((statics, {"freedoms": freedoms, "mass": mass, "dead_load": deflection, "reasons": reasons}))

@@ -129,7 +129,7 @@ class Head:
 
 
 def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
-    """Make a section from the blocks that are not `None`. Returns `None` without blocks.
+    """Make a section from the blocks that are not `None`. Returns `None` if no block is left.
 
     >>> section("Empty", [None]) is None
     True
@@ -139,7 +139,7 @@ def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
 
 
 def fold(title: str, *blocks: Block | None) -> Folded | None:
-    """Make a collapsed part from the blocks that are not `None`; a reader can open it. Returns `None` without blocks.
+    """Make a collapsed part from the blocks that are not `None`; a reader can expand it. Returns `None` if no block is left.
 
     >>> fold("Empty", None) is None
     True

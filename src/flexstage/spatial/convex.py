@@ -18,7 +18,7 @@ _PARALLEL = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Convex:
-    """Convex polytope: corners `points` (n, 3) [m], unit vectors normal to its faces, `normals` (k, 3), and along its `edges` (m, 3)."""
+    """Convex polytope: corners `points` (n, 3) [m], unit `normals` (k, 3) of its faces, and unit vectors along its `edges` (m, 3)."""
 
     points: Array
     normals: Array
@@ -31,7 +31,7 @@ class Convex:
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """Lower and upper corner of the bounding box along the axes."""
+        """Lower and upper corner of the axis-parallel bounding box."""
         return self.points.min(axis=0), self.points.max(axis=0)
 
 
@@ -61,7 +61,7 @@ class Boxes:
 def frustum(low: float, high: float, one: Array, other: Array) -> Convex:
     """Build the convex hull of two polygons: `one` (n, 2) in the plane x = `low`, `other` (n, 2) in the plane x = `high`.
 
-    The corners are (y, z), counter-clockwise; corresponding sides are parallel.
+    Corners of the polygons are (y, z), counter-clockwise; corresponding sides of both polygons are parallel.
 
     >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     >>> frustum(0.0, 2.0, square, square).points.max(axis=0).tolist()
@@ -82,10 +82,10 @@ def _unit(vectors: Array) -> Array:
 
 
 def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
-    """Return the largest gap of two polytopes over all directions [m], its direction, and the second largest gap.
+    """Return the largest gap [m] between two polytopes over all directions, its direction, and the second largest gap.
 
-    The unit direction is from the first to the second; a negative gap is the penetration depth. The gap is exact for polytopes that
-    intersect; for others it is a lower bound of the distance.
+    The unit direction points from the first to the second polytope; a negative gap is the penetration depth. The gap is exact for polytopes
+    that intersect; for others, it is a lower bound of the distance.
 
     >>> gap, direction, other = separation(cuboid((0, 0, 0), (1, 1, 1)), cuboid((0.9, 0.2, 0.0), (2, 1, 1)))
     >>> round(gap, 9), direction.tolist(), round(other, 9)
@@ -120,8 +120,8 @@ def polytope_corners(normals: Array, offsets: Array) -> Array:
 def distance(first: Array, second: Array) -> float:
     """Compute the distance [m] between the convex hulls of two point sets (n, 3); 0 if the hulls intersect.
 
-    Among the planes w . r = c with w . (b - a) >= 1, the shortest w gives the distance 1 / |w|. This least-distance problem is solved by
-    non-negative least squares (Lawson and Hanson 1974, chapter 23).
+    The distance is 1 / |w| for the shortest w with w . (b - a) >= 1 for all points a and b. This is solved by non-negative least squares
+    (Lawson and Hanson 1974, chapter 23).
 
     >>> round(distance(cuboid((0, 0, 0), (1, 1, 1)).points, cuboid((2, 2, 0), (3, 3, 1)).points), 9)
     1.414213562

@@ -14,7 +14,7 @@ from flexstage.solid.results.resolution import DEFAULT
 
 
 def fea_modes(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
-    """Return modes from the cache, or compute them if requested; without either, print a note on the option that computes them."""
+    """Return computed modes if `computing`, else those in the cache; if the cache has none, print a note on --fea."""
     if computing:
         with progress_bar() as shown:
             return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step, notice=print_warning)))

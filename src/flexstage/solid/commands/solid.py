@@ -100,7 +100,7 @@ class SolidOptions:
 
     @property
     def resolution(self) -> Resolution:
-        """Return the accuracy and the order. Raises `DesignError` for values out of range."""
+        """Return the required accuracy and element order. Raises `DesignError` for values out of range."""
         share = parse(self.accuracy, RATIO, where="--accuracy")
         if not 1e-6 <= share < 1.0:
             what = f"must be between 1e-6 and 1 (got {self.accuracy})"

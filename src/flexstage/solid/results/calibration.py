@@ -43,7 +43,7 @@ class Calibration(InNotebook):
 
     @property
     def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
-        """Relative differences (6,) of the direct compliances, FEA over beam theory less one, by part: along and about x, y, z."""
+        """Relative differences (6,) between direct compliances by FEA and by beam theory, along and about x, y, z, by name of the part."""
         return {
             name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form.part, hinge.form.material)) - 1.0
             for name, hinge in self.hinges.items()
@@ -54,8 +54,8 @@ class Calibration(InNotebook):
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
     """Compute the 6x6 compliance matrix of every distinct hinge in a design file's text, and insert the results; comments are kept.
 
-    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. Raises it
-    also if the error of a matrix by FEA is unknown or above 10 %.
+    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. A matrix
+    by FEA whose error is unknown or above 10 % is also an error.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
@@ -70,8 +70,8 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
 def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
     """Convert computed hinges to parts with compliance matrices, with the mass and the intended DOFs of the drawn hinges.
 
-    The matrix has the symmetry of the drawn hinge. In a DOF in which FEA cannot separate the hinge from the adjacent blocks, it has the
-    value of beam theory. Raises `DesignError` if the error of a matrix is unknown or above 10 %.
+    Each matrix has the symmetry of the drawn hinge. In a DOF in which FEA cannot separate the hinge from the adjacent blocks, the matrix
+    has the value of beam theory. Raises `DesignError` if the error of a matrix is unknown or above 10 %.
 
     >>> stand_ins({})
     {}

@@ -40,7 +40,7 @@ Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]
 
 @dataclass(frozen=True, eq=False)
 class DistinctHinge:
-    """A distinct hinge: `shared` is the name of its part, `form` the input of its FEA, and `links` the drawn links that are equal to it."""
+    """A distinct hinge: `shared` is the name of its part, `form` is the input of its FEA, `links` are the drawn links with this hinge."""
 
     shared: Annotated[str, INNER]
     form: Annotated[HingeForm, INNER]
@@ -54,7 +54,7 @@ class DistinctHinge:
 
 @dataclass(frozen=True, eq=False)
 class SolidHinge(DistinctHinge, InNotebook):
-    """A distinct hinge with its computed compliance about the centre, in the link frame, between the ends of its arcs."""
+    """A distinct hinge with its computed compliance: between the ends of its arcs, about its centre, in the link frame."""
 
     found: Annotated[HingeSolid, INNER]
 
@@ -70,11 +70,11 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance can be separated from that of the adjacent stubs, which is then at most 90 % of the sum.
+        """Whether each direct compliance can be separated from the compliance of the stubs, which is at most 90 % of the sum.
 
-        The solid contains stubs (pieces of the blocks) next to the hinge. Their compliance as beams with restrained warping (Vlasov) is
-        subtracted. In torsion a wide notch is stiffer than its stubs. The result is then a small difference of two large numbers, and the
-        compliance of beams is too inaccurate for it.
+        The solid contains stubs (pieces of the blocks) next to the hinge. The compliance of the stubs, as beams with restrained warping
+        (Vlasov), is subtracted. In torsion, a wide notch is stiffer than its stubs; the result is then a small difference of two large
+        numbers, and beam theory of the stubs is too inaccurate.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
@@ -141,8 +141,8 @@ STANDARD_HINGES = hinges()
 def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
     """Return every distinct hinge of a stage, by name.
 
-    A hinge has the name of its part, or `part-link` if the part is used with different roots. A hinge of a link that overrides its part has
-    the name of the link.
+    A hinge has the name of its part, or `part-link` if hinges of the part have different ends (elastic or rigid). A hinge of a link that
+    overrides values of its part has the name of the link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = distinct_hinges(double_triangle())
@@ -208,12 +208,12 @@ def require_hinges(found: Mapping[str, DistinctHinge]) -> None:
 
 
 def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:
-    """Transform the result for a form from `turned_forms` to the orientation of the drawn hinge."""
+    """Transform the result `solved`, computed for a form of `turned_forms`, to the orientation of the drawn hinge."""
     return SolidHinge(hinge.shared, hinge.form, hinge.links, _turn_back(solved, hinge.form))
 
 
 def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
-    """Return the forms of hinges to compute: a hinge with a single root is mirrored, if necessary, to have the root at its second end.
+    """Return the forms of hinges to compute. A hinge with an elastic block only at its first end is mirrored.
 
     >>> turned_forms({})
     {}

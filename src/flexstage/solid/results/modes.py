@@ -24,7 +24,7 @@ from flexstage.solid.results.resolution import DEFAULT, HIGHEST, Resolution, con
 
 @check_arguments
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
-    """Compute the modes of a stage as a solid, to the required accuracy `asked`. Raises `DesignError` for the errors of `read_solid`."""
+    """Compute the modes of a stage as a solid, to the accuracy required by `asked`. Raises the same `DesignError` as `read_solid`."""
 
     def work(way: Reduction) -> FeaModes:
         model = read_solid(mechanism, way, reduce).model
@@ -36,7 +36,7 @@ def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids 
 
 
 def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
-    """Return the modes of a stage as a solid from the cache, at the highest order with all components, or `None` if there is none.
+    """Return a stage's solid-model modes at the highest order for which all components are in the cache; `None` if there is no such order.
 
     >>> from pathlib import Path
     >>> from flexstage.cases.parallelogram import parallelogram

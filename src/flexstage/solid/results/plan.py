@@ -24,7 +24,7 @@ from flexstage.solid.results.resolution import Resolution, first_reductions
 
 @dataclass(frozen=True)
 class Plan:
-    """Jobs that a computation needs in any case. Without a result of each job in `needed` (keys), the computation has no result."""
+    """Jobs that a computation needs in any case. If a job with a key in `needed` fails, the computation fails."""
 
     jobs: tuple[StoredJob, ...]
     needed: frozenset[str] = frozenset()
@@ -59,7 +59,7 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
 
 def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *, bare: bool = False) -> Plan:
-    """Return the jobs that `solid` needs in any case for stages as drawn: their components at two orders, without modes if `bare`.
+    """Return the jobs that `solid` needs for stages as drawn: reductions of all components at two orders, without modes if `bare`.
 
     Outlines are checked. Raises `DesignError` if a stage cannot be modelled as a solid.
     """
@@ -71,9 +71,9 @@ def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *
 
 
 def work_ahead(plan: Plan, ways: Ways) -> None:
-    """Run the planned jobs in one queue, so that hinges, stage and units find their results in the pool of `ways`.
+    """Run the planned jobs in one queue. The computations of hinges, stage and units then find their results in the pool of `ways`.
 
-    Raises `DesignError` if a needed job fails. The failure of another job, of an isolated unit, is reported when the units are computed.
+    Raises `DesignError` if a needed job fails. The failure of any other job (of an isolated unit) is reported when the units are computed.
     """
     try:
         obtain(plan.jobs, ways)
@@ -84,7 +84,7 @@ def work_ahead(plan: Plan, ways: Ways) -> None:
 
 
 def units_alone(mechanism: Mechanism) -> list[Mechanism]:
-    """Return every distinct isolated unit as drawn; none if the strokes do not determine its platform motion, which is reported later.
+    """Return every distinct isolated unit as drawn, or no unit if the strokes do not determine its motion; this error is reported later.
 
     >>> units_alone(Mechanism("nothing"))
     []

@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """Return a function that stores the results of `reduce`. Reductions with `raised` components combine stored ones of two orders.
+    """Return a function that stores the results of `reduce`. For `raised` components, it combines stored results of two orders.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()
@@ -107,8 +107,7 @@ def model(
     [bytes] limits the planned memory (default: the free memory of the machine).
 
     Before meshing, raises `DesignError` for links without a shape or a specified stiffness, and for gaps, overlaps and slivers of outlines.
-    Raises it also for failed meshes, insufficient memory or time, and stages with rigid-body motions. Warnings report problems of the
-    cache.
+    Failed meshes, insufficient memory or time, and stages with rigid-body motions are also errors. Problems of the cache cause warnings.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> model(parallelogram(), memory=1e6, cache=None)
@@ -120,7 +119,7 @@ def model(
 
 
 def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
-    """Model a stage as solids; calibrated hinges have the shapes that their matrices replace.
+    """Model a stage as solids. For a calibrated hinge, its drawn shape is used instead of its compliance matrix.
 
     `reduce` is the function that reduces the components. Raises `DesignError` for links without a shape or a specified stiffness, for gaps,
     overlaps and slivers of outlines, and if the stage has a rigid-body motion.

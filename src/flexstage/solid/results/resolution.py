@@ -29,7 +29,7 @@ NOT_ESTIMATED = "the error of FEA is unknown: order one, the reference of order 
 
 @dataclass(frozen=True)
 class Resolution(CheckedFields):
-    """Required relative error of stiffnesses, gains and frequencies, or instead a fixed `order` of elements."""
+    """Required relative error `accuracy` of stiffnesses, gains and frequencies. If `order` is specified, it is the fixed element order."""
 
     accuracy: float = 0.01
     order: int | None = None
@@ -40,11 +40,11 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; absent errors are unknown.
+    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; figures missing in `errors` have none.
 
-    The error is the change from the previous order; at order two it is a quarter of this change. The errors of the `unestimated` figures,
-    which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further, although the required
-    accuracy was not reached. `raised` is the number of components with elements of one order more.
+    The estimated error is the change from the previous order; at order two, it is a quarter of this change. At order two, errors of the
+    `unestimated` figures, which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further,
+    although the required accuracy was not reached. `raised` is the number of components with elements of one order more.
     """
 
     result: Annotated[_Result, INNER]
@@ -67,10 +67,10 @@ def converge(
     sizes: Callable[[_Result], Mapping[str, float]] | None = None,
     measure: Callable[[Reduction], Mapping[str, float]] | None = None,
 ) -> Converged[_Result]:
-    """Compute at rising orders (2, 3, 4) until the estimated errors are within the accuracy, or only at a fixed order and the one below.
+    """Raise the element order (3, 4) until the estimated errors are within the accuracy, or compute at the order in `asked`.
 
-    With `sizes`, the unknowns of each component, only components that cause a large fraction of the change get a higher order.
-    `measure` computes only the figures of a result.
+    Errors are estimated by a computation with one order less. `sizes` returns the number of unknowns of each component; with it, components
+    that cause a large fraction of the change get a higher order first. `measure` computes only the figures of a result.
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)
@@ -158,7 +158,7 @@ def orders_of(asked: Resolution) -> tuple[int, ...]:
 
 
 def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
-    """Return the two reductions that are always needed: the one for the error estimate, and the one of the lowest order to compute.
+    """Return the two reductions that are always needed: of the lowest order to compute, and of one order less for the error estimate.
 
     >>> [way.fineness.order for way in first_reductions(Resolution())]
     [2, 3]
@@ -177,7 +177,7 @@ def reduction_of_order(order: int) -> Reduction:
 
 
 def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
-    """Estimate the relative errors of the figures at an order from the figures at this order and at the one below.
+    """Estimate the relative errors of figures `after` at an `order` from the figures `before` at the next lower order.
 
     At order two, a figure that differs from order one by more than half has no estimate.
 

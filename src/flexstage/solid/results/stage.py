@@ -46,10 +46,10 @@ class BodyCost:
 class SolidStage(InNotebook):
     """Results of a stage by the solid model.
 
-    `statics` and `modes` are as for any model. `stress` is the highest stress at every link and body over all corners of the stroke range,
-    measured from zero voltage, with permanent load. It is `None` without strokes or with too many corners. `worst` (N,) are the model's
-    coordinates at the corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, which
-    are rigid in other models, in each mode.
+    `statics` and `modes` are defined as for any model. `stress` is the highest stress at every link and body over all corners of the stroke
+    range, measured from zero voltage, with permanent load. `stress` is `None` without strokes or with too many corners. `worst` (N,) are
+    the model's coordinates at the corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the
+    elastic bodies in each mode.
     """
 
     statics: Annotated[Statics, Called("stiffness")]
@@ -77,7 +77,7 @@ class SolidStage(InNotebook):
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
-        """Links without a shape, with the kind of their part. As in any model, they have the specified stiffness and mass."""
+        """Links without a shape, with the kind of their part. As in any model, these links have their specified stiffness and mass."""
         return stated_links(expand(self.read.mechanism))
 
     @property
@@ -107,7 +107,7 @@ def _figures(found: Statics, modes: Modes) -> dict[str, float]:
 
 
 def stage_figures(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, float]:
-    """Compute only the `figures` of `solid_stage`, without stress. Raises `DesignError` for the same errors."""
+    """Compute only the `figures` of `solid_stage`, without stress. Raises the same `DesignError`."""
     model = read_solid(mechanism, reduction, reduce).model
     return _figures(statics(model), platform_modes(mechanism, model))
 
@@ -175,7 +175,7 @@ def _corners(read: SolidRead) -> tuple[Array, dict[str, Array]] | None:
 
 
 def worst_strokes(stage: SolidStage) -> dict[str, float]:
-    """Return the strokes [m] by actuator at the corner with the highest stress of the weakest link."""
+    """Return the stroke [m] of each actuator at the corner with the highest stress of the weakest link."""
     if stage.stress is None:
         return {}
     limits = stroke_limits(stage.read.mechanism).from_zero

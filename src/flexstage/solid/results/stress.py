@@ -28,8 +28,8 @@ SILENT = 1e3
 class LinkStress(InNotebook):
     """Highest von Mises stress (L,) [Pa] on the surface of links and bodies, except stacks, over some load cases.
 
-    `case` (L,) is the number of the load case with the highest stress. `yield_stress` (L,) [Pa] is the yield stress, or the fatigue limit
-    or allowable stress if lower (NaN: unknown). At sharp inner corners the true stress is infinite, and the computed stress grows with the
+    `case` (L,) is the number of the load case with this stress. `yield_stress` (L,) [Pa] is the yield stress, or the fatigue limit or
+    allowable stress if lower (NaN: unknown). At sharp inner corners the true stress is infinite, and the computed stress grows with the
     resolution.
     """
 
@@ -73,7 +73,7 @@ class LinkStress(InNotebook):
 def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) -> LinkStress | None:
     """Compute the highest stress of links and bodies over k load cases; `None` if only stacks have a shape.
 
-    `motion` (N, k) are the model's coordinates in the load cases; `strokes` (k,) [m] by input are the corresponding strokes.
+    `motion` (N, k) are the model's coordinates in the load cases; `strokes` maps each input to its strokes (k,) [m] in these cases.
     """
     assembly = expand(read.mechanism)
     by_link = {assembly.actuators[name]: values for name, values in strokes.items()}

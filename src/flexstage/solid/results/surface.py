@@ -27,7 +27,7 @@ class Surface:
 
 
 def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
-    """Return the surfaces of a stage with magnified displacements of a mode (N,); values are relative displacements, 0 to 1."""
+    """Return the surfaces of a stage, displaced by the magnified `shape` (N,) of a mode; values are relative displacements, 0 to 1."""
     factor, largest = magnification(read, shape)
     return tuple(
         Surface(vertex_places(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
@@ -36,9 +36,9 @@ def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
 
 
 def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]) -> tuple[Surface, ...]:
-    """Return the surfaces of a stage with magnified static displacements `motion` (N,); values are von Mises stress [Pa].
+    """Return the surfaces of a stage, displaced by the magnified static `motion` (N,). Their values are von Mises stress [Pa].
 
-    `strokes` [m] are the strokes by input for this motion.
+    `strokes` maps each input to its stroke [m] in this motion.
     """
     assembly = expand(read.mechanism)
     factor, _ = magnification(read, motion)

@@ -37,7 +37,7 @@ class SolidUnit(UnitOutput, InNotebook):
     """Results of one isolated unit by the linear solid model, with its output guided along `direction`, without load.
 
     `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the stress at every link at the full stroke.
-    `motion` (N,) are the coordinates of its model, `read`, at the full stroke, for pictures.
+    For pictures, `motion` (N,) are the coordinates of the unit's model `read` at the full stroke.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -73,7 +73,7 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def load_compliance(self) -> Annotated[float, COMPLIANCE]:
-        """Compliance of the guided output under a force along it [m/N]."""
+        """Compliance of the guided output under a force along its direction [m/N]."""
         return 1.0 / self.axial
 
     @property
@@ -88,17 +88,17 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def lost(self) -> Annotated[Array, INNER, LENGTH, Heading("lost motion", unit="um")]:
-        """Lost motion (k,) [m]: commanded outputs less outputs; differences within rounding error are zero."""
+        """Lost motion (k,) [m]: commanded output minus output; differences within rounding error are zero."""
         found = self.commands - self.outputs
         return np.where(np.abs(found) < NOISE * np.abs(self.commands), 0.0, found)
 
 
 @check_arguments
 def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
-    """Model every unit that drives its own output by exactly one actuator as an isolated solid; results by name of the unit.
+    """Model every unit with exactly one actuator at its output as an isolated solid. Return the results by name of the unit.
 
     The first instance of the unit is used. Outlines of other bodies are left out. The output is the end face of the link to the platform;
-    this face remains plane. Raises `DesignError` if the stage has no such unit.
+    this face remains plane. Raises `DesignError` if the stage has no unit with one actuator.
 
     >>> from flexstage.cases.registry import case
     >>> solid_units(case("bridge"))

@@ -70,7 +70,7 @@ class Row:
     `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the paper's model with axial springs,
     if it applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is the estimated
     relative error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the MAC of paired modes.
-    `reason` explains unknown values, which are absent. Without `calibration`, a verdict requires `theory` and `fea_error`.
+    Unknown values are `None`, and `reason` explains them. If `calibration` is empty, a verdict requires `theory` and `fea_error`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -92,17 +92,17 @@ class Row:
 
     @property
     def shown_unit(self) -> str:
-        """Unit for tables: the SI unit, or per cent for a loss."""
+        """Unit for tables: per cent for lost motion, else the SI unit."""
         return "%" if self.figure == "loss" else self.unit
 
     @property
     def difference(self) -> Annotated[float | None, RATIO, Heading("theory error", digits=3, unit="%")]:
-        """Relative difference: theory over FEA, less one."""
+        """Relative difference between theory and FEA: theory / FEA - 1."""
         return None if self.theory is None else _relative(self.theory, self.fea)
 
     @property
     def calibrated_difference(self) -> Annotated[float | None, RATIO, Heading("calibrated error", digits=3, unit="%")]:
-        """Relative difference: calibrated theory over FEA, less one."""
+        """Relative difference between calibrated theory and FEA: calibrated theory / FEA - 1."""
         return None if self.calibrated is None else _relative(self.calibrated, self.fea)
 
     @property
@@ -164,7 +164,7 @@ class Verification(InNotebook):
 
     @property
     def verdicts(self) -> Annotated[Mapping[str, str], VIEW]:
-        """Verdict on the models as text, by group."""
+        """Verdict on the models, in words, for each group of figures."""
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
@@ -191,8 +191,8 @@ def verify(
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
     Theory uses the design as it is, including calibrated hinges; FEA uses the drawn shapes. Hinges are computed first, then the stage, then
-    units. The function `tell` is called with the rows of hinges, stage and units when they are known. Without `reduce` and `compute`, all
-    jobs run in one queue. Raises `DesignError` if the stage cannot be modelled as a solid.
+    units. After each of these groups, the function `tell` is called with the group's rows. If neither `reduce` nor `compute` is specified,
+    all jobs run in one queue. Raises `DesignError` if the stage cannot be modelled as a solid.
     """
     if reduce is STANDARD_SOLIDS and compute is STANDARD_HINGES:
         with Pool() as pool:
@@ -223,7 +223,7 @@ def _ignore(_rows: tuple[Row, ...]) -> None:
 
 
 def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:
-    """Compute the results of the whole stage as a solid, to the required accuracy `asked`."""
+    """Compute the results of the whole stage as a solid, to the accuracy required by `asked`."""
     again = remember(reduce)
     return converge(
         lambda way: solid_stage(mechanism, way, again),
@@ -236,10 +236,10 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
 
 @check_arguments
 def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Estimate:
-    """Compute the quantities that a stage's requirements limit, by finite elements, with estimated errors. Unknown values are left out.
+    """Compute by finite elements the quantities that a stage's requirements limit, with estimated errors. Unknown values are left out.
 
-    Strokes, stresses and frequencies are computed from the reduced solid model in the same way as from the lumped model. Stress at fillets
-    is computed with the stress concentration factors of hinges.
+    Strokes, stresses and frequencies are computed from the reduced solid model in the same way as from the lumped model. The stress
+    concentration at fillets is included by the stress concentration factors of hinges.
     """
     again = remember(reduce)
     found = converge(
@@ -251,10 +251,10 @@ def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: S
 def units_solid(
     mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, *, bare: bool = False
 ) -> Converged[dict[str, SolidUnit]]:
-    """Compute the results of every distinct isolated unit as a solid, to the required accuracy `asked`; keys of errors are `unit: figure`.
+    """Compute every distinct isolated unit as a solid, to the accuracy required by `asked`. The keys of the errors are `unit: figure`.
 
-    Components are reduced with modes, so that the same components of the stage need no further computation. With `bare` they are reduced
-    without modes; static figures are equal.
+    Components are reduced with modes, so that the same components of the stage need no further computation. With `bare`, components are
+    reduced without modes, which does not change static figures.
     """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
@@ -295,9 +295,9 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 
 
 def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
-    """Compute isolated units by theory with compliance matrices of hinges from FEA, for the roots of hinges in the isolated unit.
+    """Compute isolated units by theory with compliance matrices of hinges from FEA, for the hinges' ends in the isolated unit.
 
-    If the output has no outlines in the isolated unit, the end of the hinge at the output is rigid.
+    If the output of the isolated unit has no outlines, the end of the hinge at the output is rigid.
     """
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
@@ -307,7 +307,7 @@ def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDAR
 
 
 def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Converged[dict[str, SolidUnit]]) -> Iterator[Row]:
-    """Yield the rows of isolated units: K_a, K_l, gain and loss; `better` are the units with calibrated hinges.
+    """Yield the rows of isolated units: axial and lateral stiffness, gain and lost motion; `better` are the units with calibrated hinges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(unit_rows(double_triangle(), {}, Converged({}, {}, 3)))

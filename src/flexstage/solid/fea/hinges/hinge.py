@@ -132,15 +132,15 @@ def hinge_compliance(
     """Compute the 6x6 compliance matrix of a hinge by finite elements, to the required accuracy (default 1 %).
 
     With one outer face fixed and the other moved rigidly by e_i about the centre, the displacements u_i have the energies K_ij = u_i . K_FE
-    u_j. Then C = K^-1 - sum over stubs of X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last
-    changes (`estimate.remaining`) is within `accuracy.error`.
+    u_j. The compliance of the stubs is subtracted: C = K^-1 - sum over stubs of X C_stub X^T. First the order is raised, then the mesh is
+    refined, until the error estimated from the last changes (`estimate.remaining`) is within `accuracy.error`.
 
     `roots` selects the ends that are on blocks (default: both ends of a profile that rises to its blocks, else none). `stub` [m] is the
-    length of a stub: by default the hinge's full height, or five times its `grain` if the block is wider than the hinge.
+    length of a stub. The default is the hinge's full height; if the block is wider than the hinge, it is five times the hinge's `grain`.
 
-    The depth of the root is a convention: C_x changes by 1 to 3 % with the stub's length, C_y by about 10 %, and C_rx of a hinge several
-    times wider than high by a large factor. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made.
-    `told` is called for every mesh and solution.
+    The stub's length is a convention; it changes C_x by 1 to 3 %, C_y by about 10 %, and C_rx by a large factor if the hinge is several
+    times wider than high. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made. The functions in `told`
+    report every mesh and solution.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -262,11 +262,11 @@ def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
 
 
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
-    """Return a mesh [mm] of a hinge with stubs and the faces `start` and `end`; no element is inverted at any order up to `order`.
+    """Return a mesh [mm] of a hinge with stubs, whose outer faces are `start` and `end`. No element is inverted at any order up to `order`.
 
-    For an isotropic material only one symmetric portion is meshed: the quarter at positive y and z, or half of a leaf.
-    Elements are `factor` times the usual size. If the mesher fails or an element is inverted, other sizes are tried, a few times. Raises
-    `DesignError` if all fail.
+    For an isotropic material only one symmetric portion is meshed: the quarter at positive y and z, or half of a leaf. Elements are
+    `factor` times the usual size. If the mesher fails or an element is inverted, a few other sizes are tried. Raises `DesignError` if
+    meshing fails with all sizes.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -307,9 +307,9 @@ def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.M
 
 
 def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
-    """Return the lowest Jacobian determinant [mm^3] at a lattice of points in every element, near corners and edges, which fold first.
+    """Return the lowest Jacobian determinant [mm^3] over a lattice of points in every element; elements fold first near corners and edges.
 
-    Edges are excluded: if two faces of an element are on one smooth surface, the determinant is zero at their edge without harm.
+    Points on edges are excluded: if two faces of an element are on one smooth surface, the determinant at their common edge is always zero.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> lowest_jacobian(hinge_mesh(Leaf("steel", 1e-3, 1e-3, 1e-3))) > 0.0

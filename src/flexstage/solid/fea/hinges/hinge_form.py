@@ -16,7 +16,7 @@ LEAVE = "Compare it with beam theory (flexstage verify), or in Python increase f
 
 
 class HingeForm(NamedTuple):
-    """Input of a hinge computation: the shape of the hinge, its material, and its ends that are attached to blocks."""
+    """Input of a hinge computation: the hinge's shape and material, and the `roots`, which are the ends attached to blocks."""
 
     part: Shaped
     material: Material
@@ -25,13 +25,13 @@ class HingeForm(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class HingeSolid:
-    """6x6 matrices of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
+    """6x6 matrices [SI] of a hinge by three-dimensional elasticity, between the ends of its arcs, about its centre in the link frame.
 
     `compliance` and `stiffness` (6, 6) are for the twist (x, y, z, rx, ry, rz) of the second end relative to the first. `error` estimates
-    the largest relative error of the compliance *at the hinge's end*, with each entry ij relative to sqrt(C_ii C_jj) there. `changes` (6,)
-    are the last relative changes of the diagonal about the centre. The changes of y and z are larger, because these entries are differences
-    of lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`, `elements` and `order` belong
-    to the last solution; `finding` is the warning if the accuracy was not reached.
+    the largest relative error of the compliance *at the hinge's end*, where each entry ij is compared with sqrt(C_ii C_jj). `changes` (6,)
+    are the last relative changes of the diagonal about the centre. The entries of y and z change more, because they are differences of
+    lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`, `elements` and `order` are those
+    of the last solution; `finding` is a warning if the required accuracy was not reached.
     """
 
     compliance: Array

@@ -13,7 +13,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Roots:
-    """Whether a hinge's `first` end (towards -x of its frame) and its `second` end are on an elastic block; else the end is rigid."""
+    """Whether the `first` end of a hinge (at -x of its frame) and the `second` end are on elastic blocks; an end on no block is rigid."""
 
     first: bool
     second: bool
@@ -29,7 +29,7 @@ class Roots:
 
 
 def own_roots(part: Shaped) -> Roots:
-    """Return the roots of an isolated hinge: a profile that rises to its ends is between blocks of its height, others between rigid faces.
+    """Return the roots of an isolated hinge. A profile that `rises` is between blocks of its own height, other shapes between rigid faces.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
@@ -39,7 +39,7 @@ def own_roots(part: Shaped) -> Roots:
 
 
 def rises(part: Shaped) -> bool:
-    """Return whether a profile of cuts rises to the full height of blocks at its ends.
+    """Return whether the cuts of a profile end at the full height of the part.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> rises(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
@@ -50,7 +50,7 @@ def rises(part: Shaped) -> bool:
 
 
 def roots_of(assembly: Assembly, link: PlacedLink) -> Roots:
-    """Return the roots of a link in the stage: its ends on bodies with outlines; the ground and bodies without outlines are rigid.
+    """Return the roots of a link in the stage: the ends on bodies with outlines. The ground and bodies without outlines are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -48,7 +48,7 @@ _Curve = list[occ.TopoDS_Shape]
 
 @dataclass(frozen=True)
 class Specimen:
-    """A drawn hinge with stubs [mm]: the solid with faces `start` and `end`, element sizes on its edges, and the `largest` size."""
+    """A drawn hinge with stubs [mm]: the `solid` with faces `start` and `end` and element sizes on edges; the `largest` element size."""
 
     solid: occ.TopoDS_Shape
     largest: float
@@ -101,7 +101,7 @@ class _Side:
 
 
 def grain(part: Shaped) -> float:
-    """Return the length scale of the root's compliance [m]: end thickness; geometric mean with the width if the hinge bends both ways.
+    """Return the length scale of the root's compliance [m]: the end's thickness, or sqrt(thickness x width) if the hinge bends both ways.
 
     >>> from flexstage.parts.neck import Neck
     >>> grain(Neck("steel", 1e-3, Straight(0.01), width=4e-3))
@@ -112,7 +112,7 @@ def grain(part: Shaped) -> float:
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
-    """Return section and length [m] of the stub at a hinge's end: as high as the end of a profile that rises, else wider on all sides.
+    """Return section and length [m] of the stub at a hinge's end: as high as a profile that `rises`, else wider on all sides.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -128,9 +128,9 @@ def own_stub(part: Shaped) -> tuple[Section, float]:
 
 
 def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
-    """Draw a hinge with a profile, with stubs of these lengths [mm]; arcs are complete at a stub. A straight profile is drawn as a `bar`.
+    """Draw a hinge that has a profile, and stubs with the lengths `stubs` [mm]. Arcs next to a stub are complete.
 
-    A notch is thin along y and wide along z; a round neck is revolved about x.
+    A straight profile is drawn as a `bar`. A notch is thin along y and wide along z; a round neck is revolved about x.
     """
     if part.is_prismatic:
         return bar(part, stubs, size)
@@ -151,7 +151,7 @@ def _draw_cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specim
 
 
 def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS_Shape | None = None) -> Specimen:
-    """Draw a part with end blocks of these lengths [mm]; `drawn` [mm] is its solid (default: a prism of its section)."""
+    """Draw a part with end blocks of the lengths `stubs` [mm]; `drawn` [mm] is the part's solid (default: a prism of its section)."""
     side = _Side(0.5 * millimetres(part.end.height), Straight(part.span), stubs)
     solid = _prism(part) if drawn is None else drawn
     thin = _thinness(part)

@@ -18,9 +18,9 @@ _MOST = 0.8
 class Accuracy(CheckedFields):
     """Requirements of an adaptive solve.
 
-    `error` is the required relative error, `freedoms` the maximum number of DOFs. On the first mesh the order rises from the first to the
-    second of `orders`. Then it is constant, and the element size is multiplied by `shrink` from mesh to mesh. `meshes` is the maximum
-    number of meshes.
+    `error` is the required relative error, `freedoms` the maximum number of DOFs. On the first mesh, the element order rises from the first
+    to the second of `orders`. The following meshes have the second order, and element sizes are multiplied by `shrink` from mesh to mesh.
+    `meshes` is the maximum number of meshes.
     """
 
     error: float = 0.01
@@ -31,7 +31,7 @@ class Accuracy(CheckedFields):
 
 
 def change(first: Array, second: Array) -> float:
-    """Compute the largest relative change between two compliances (6, 6), each entry ij relative to sqrt(C_ii C_jj) of the second.
+    """Compute the largest relative change between two compliances (6, 6); each entry ij is relative to sqrt(C_ii C_jj) of the second.
 
     >>> change(np.diag([1.0, 2.0]), np.diag([1.0, 2.02])).__round__(4)
     0.0099
@@ -41,10 +41,10 @@ def change(first: Array, second: Array) -> float:
 
 
 def remaining(changes: Iterable[float]) -> float:
-    """Estimate the error of the last of several results from the successive changes d_1, d_2, ... of the result: max(1, r / (1 - r)) d_n.
+    """Estimate the error of the last of several results as max(1, r / (1 - r)) d_n; d_1, d_2, ... are the `changes` between them.
 
-    r = d_n / d_(n-1), at most 0.8. For slow convergence this is the sum of a geometric series, for fast convergence the last change, an
-    overestimate. For a single result it is infinite. It is an estimate, not a bound.
+    Here r = d_n / d_(n-1), at most 0.8. For slow convergence, the estimate is the sum of a geometric series; for fast convergence, it is
+    the last change, an overestimate. The estimate is not a bound. It is infinite for a single result.
 
     >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), round(remaining([0.4, 0.4]), 6), remaining([0.4]), remaining([])
     (0.1, 0.9, 1.6, 0.4, inf)

@@ -40,10 +40,10 @@ WARPS = 12
 
 @dataclass(frozen=True)
 class Fineness(CheckedFields):
-    """Mesh size and polynomial `order`, also of the curved geometry; elements in notches and thin leaves have one order more.
+    """Element sizes and polynomial `order` of displacements and curved geometry; elements in notches and thin leaves have one order more.
 
-    The element size is `neck` times a link's smallest thickness on its faces, and `block` times a body's smallest dimension elsewhere. It
-    grows by `grading` (0.1 slow to 0.9 fast).
+    On the faces of a link, the element size is `neck` times the smallest thickness; on the faces of a body, it is `block` times the
+    smallest dimension. `grading` is the growth of the element size away from small elements (0.1 slow to 0.9 fast).
     """
 
     neck: float = 1.5
@@ -53,7 +53,7 @@ class Fineness(CheckedFields):
 
 
 class Hold(Enum):
-    """Constraint of interface faces between elastic bodies: to a twist with linear and quadratic warps, or only in the mean twist."""
+    """Motion of interface faces between elastic bodies: a twist with linear and quadratic warps, or free with a prescribed mean twist."""
 
     RIGID = "rigid"
     AVERAGED = "averaged"
@@ -63,9 +63,9 @@ class Hold(Enum):
 class Reduction(CheckedFields):
     """Options of a component's reduction: mesh and order, number of fixed-interface modes, constraint of its interface faces.
 
-    `residual` adds the static response, with faces fixed, to the inertia of the faces' motions. It replaces the omitted modes to first
-    order in frequency squared. Components whose content is in `raised` have elements of one order more than the others. With `static` the
-    raised components have no modes, which static results do not need.
+    `residual` adds the static response with faces fixed to the inertia forces of the faces' motions. This response replaces the omitted
+    modes to first order in frequency squared. Components whose content is in `raised` have elements of one order more than the others. With
+    `static`, the `raised` components have no modes, because static results do not need them.
     """
 
     fineness: Fineness = Fineness()
@@ -76,7 +76,7 @@ class Reduction(CheckedFields):
     static: bool = False
 
     def of(self, content: str) -> Reduction:
-        """Return the options of a component, by its content.
+        """Return the options of the component with this `content`.
 
         >>> own = Reduction(raised=frozenset({"lever"}), static=True).of("lever")
         >>> own.fineness.order, own.modes
@@ -88,7 +88,7 @@ class Reduction(CheckedFields):
 
 
 def is_leaf(form: object) -> bool:
-    """Return whether a form is a leaf: of rectangular section, thin along its whole length.
+    """Return whether a form is a leaf: its section is rectangular, and it is thin along its whole length.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_leaf(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -98,7 +98,7 @@ def is_leaf(form: object) -> bool:
 
 
 def is_notch(form: object) -> bool:
-    """Return whether a form is a hinge with arcs across a width: its strain varies smoothly across and along it.
+    """Return whether a form is a hinge with arcs that is not axisymmetric: the strain in it varies smoothly.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_notch(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -108,7 +108,7 @@ def is_notch(form: object) -> bool:
 
 
 def is_thin(form: object) -> bool:
-    """Return whether a form is a leaf or notch wider and longer than 35 times its thickness: only these have flat elements.
+    """Return whether a form is a leaf or notch wider and longer than 35 times its thickness; only thin forms have flat elements.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> [is_thin(Leaf("steel", 0.04, 1e-3, width)) for width in (0.03, 0.04)]
@@ -123,7 +123,7 @@ def _short(form: Shaped) -> float:
 
 
 def is_strut(form: object) -> bool:
-    """Return whether a form is a neck of one section, which ends on blocks wider than itself.
+    """Return whether a form is a neck of constant section, whose end blocks are wider than the neck.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_strut(Leaf("steel", 0.01, 1e-3, 5e-3))

@@ -65,8 +65,8 @@ _AT_HAND = 8
 class PieceMesh:
     """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) of each element.
 
-    `finer` elements (mask), in notches and thin leaves, have one order more than the others. If the mesh is the positive side of a
-    component with `mirrors`, `images` (copies - 1, elements) are the pieces of the mirror images of its elements.
+    The mask `finer` selects elements in notches and thin leaves, which have one order more than the others. If the mesh is the positive
+    side of a component with `mirrors`, `images` (copies - 1, elements) are the pieces of the elements' mirror images.
     """
 
     mesh: ngsolve.Mesh
@@ -81,11 +81,11 @@ class PieceMesh:
 def mesh_component(
     component: Component, fineness: Fineness, report: Report = silent, first: int = 0, *, by_symmetry: bool = False
 ) -> PieceMesh:
-    """Draw and mesh a component; with `by_symmetry` only the positive side of a symmetric one.
+    """Draw and mesh a component; `by_symmetry`: only the positive side of a symmetric component.
 
     Elements near the ends of arcs get straight sides if curving would invert them. If the mesher fails, or an element of a neck is
-    inverted, sizes and grading are varied, a few times. `first` is the number of the first attempt, after a crash of an earlier one.
-    Drawings and meshes are cached: for another order, the mesh is only curved again. Raises `DesignError` if all attempts fail.
+    inverted, a few other sizes and gradings are tried. `first` is the number of the first attempt, if earlier attempts crashed. Drawings
+    and meshes are cached; for another order, the mesh is only curved again. Raises `DesignError` if meshing fails in all attempts.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -227,10 +227,10 @@ def _middle_points(form: Shaped, size: float) -> Array:
 
 
 def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
-    """Return points (n, 3) within a round neck with an arc, in its frame, and the element size there [m].
+    """Yield points (n, 3) inside a round neck with an arc, in the neck's frame, and the element size at the points [m].
 
-    `neck` is the element size on its faces over the thickness. The points are on its axis and halfway to its surface. Other hinges have
-    none.
+    `neck` is the element size on the neck's faces, divided by the thickness. The points are on the neck's axis and halfway to its surface.
+    Other hinges have no points.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> list(core_points(Leaf("steel", 0.01, 1e-3, 5e-3), 1.5))
@@ -321,7 +321,7 @@ def centroids(mesh: ngsolve.Mesh) -> Array:
 
 
 def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
-    """Return the piece (index) of each point: the nearest piece by bounding box, links before bodies.
+    """Return the piece (index) with the nearest bounding box for each point. At equal distance, links precede bodies.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()
