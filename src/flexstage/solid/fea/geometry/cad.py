@@ -82,10 +82,10 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 def mirrors_of(component: Component) -> Mirrors:
     """Return the planes normal to y and z about which a component of one medium is symmetric and can be cut.
 
-    Every joint, link and body must be its own mirror image. Leaves are cut only if thin, and only across their width: otherwise their flat
-    elements would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders (except round plates),
-    spheres and round holes are not cut either. Their curvature sets the size of elements, and the mesher divides arcs less finely than
-    circles, which would reduce their mass.
+    Every joint, link and body must be its own mirror image. Leaves are cut only if they are thin, and only across their width: other cuts
+    would make their flat elements even flatter, or leave fewer elements across the leaf. Stacks, rods, cylinders (except round plates),
+    spheres and round holes are not cut. The mesher sets the element size by curvature and divides arcs less finely than circles; cut round
+    pieces would lose mass.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> mirrors_of(bar())
@@ -197,7 +197,7 @@ def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
 
 
 def region(piece: Piece, points: Array) -> Array:
-    """Estimate the distance (n,) [m] of points (n, 3) from a piece: the largest component of that from its bounding box, 0 inside.
+    """Estimate distances (n,) [m] of points (n, 3) from a piece: the largest component of the vector from its bounding box, 0 inside it.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> region(bar().pieces[0], np.array([[0.05, 0.0, 0.0], [0.05, 0.0, 0.007]])).round(9).tolist()

@@ -20,7 +20,7 @@ _NO_VOLUME = 1e-6
 def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
     """Yield a question for every pair of near outlines of different bodies or links, except a link and a body that it joins.
 
-    `clearance` is the required distance [m]; equal pairs of several instances share one question.
+    `clearance` is the required distance [m]. Equal pairs of outlines in several instances share one question.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.geometry.stage_pieces import stage_pieces

@@ -54,7 +54,7 @@ def draw_form(form: Form) -> occ.Solid:
 
 
 def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
-    """Draw a hinge with stubs of these lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
+    """Draw a hinge with stubs of lengths `stubs` [m] at its first and second end; elements at the neck are `size` times the thickness.
 
     The hinge is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
 
@@ -232,10 +232,10 @@ def prism(form: Shaped) -> occ.Solid:
 
 @dataclass(frozen=True)
 class Shape:
-    """Functions that draw a kind of part as a CAD solid in millimetres: at the origin, and as a specimen with stubs at its ends.
+    """Functions that draw a kind of part as a CAD solid [mm]. `draw` draws it at the origin, `specimen` with stubs at its ends.
 
-    By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts require `specimen.cut`: shortened arcs
-    meet rigid faces at angles that cannot be meshed.
+    By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts need `specimen.cut`, which blunts arcs at
+    rigid faces: complete arcs would meet these faces at angles that cannot be meshed.
     """
 
     draw: Callable[[Any], occ.Solid]

@@ -27,9 +27,9 @@ TOLERANCE = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class ImportedProperties:
-    """Properties of a file's solid in its axes: `sha256` of the file, sides and middle of the bounding box [m], volume [m^3], centre [m].
+    """Properties of the solid in a file, in the file's axes: sides `size` and `middle` of the bounding box [m], volume [m^3], centroid [m].
 
-    `inertia` (3, 3) is for unit density, about the centre [m^5].
+    `inertia` (3, 3) is for unit density, about the centroid [m^5]. `sha256` is the digest of the file.
     """
 
     sha256: str
@@ -43,7 +43,7 @@ class ImportedProperties:
 def imported_shape(form: Imported) -> occ.TopoDS_Shape:
     """Return the file's solid [mm], with the middle of its bounding box at the origin.
 
-    Raises `DesignError` for a missing file, a file other than STEP or with another digest, or without exactly one matching solid.
+    Raises `DesignError` if the file is missing, is not a STEP file, has another digest, or does not contain exactly one matching solid.
     """
     path = Path(form.file)
     require(_version_findings(path, form.sha256))
@@ -57,9 +57,9 @@ _ACROSS = occ.Axes(occ.Pnt(0, 0, 0), n=occ.Y, h=occ.X)
 
 
 def measure(path: Path, name: str | None = None) -> ImportedProperties:
-    """Measure the solid in a STEP file; if there are several, the one with this name or number (`#2`).
+    """Measure a solid in a STEP file: the only one, or the solid with this `name` or number (`#2`).
 
-    Raises `DesignError` for a missing file, or one without exactly one such solid.
+    Raises `DesignError` if the file is missing, or does not contain exactly one matching solid.
 
     >>> measure(Path("nowhere.step"))
     Traceback (most recent call last):
@@ -80,7 +80,7 @@ def _inertia(solid: occ.TopoDS_Shape) -> Array:
 
 
 def with_properties(found: ImportedProperties, file: str, material: str, density: float, solid: str | None = None) -> Imported:
-    """Describe a measured solid with a `density` [kg/m^3], and with the name `solid` if its file contains several.
+    """Describe a measured solid of this `density` [kg/m^3]. If its file contains several solids, `solid` is its name there.
 
     >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
     >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)

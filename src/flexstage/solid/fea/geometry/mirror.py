@@ -24,9 +24,10 @@ _FAR = 4.0
 
 @dataclass(frozen=True)
 class Mirrors:
-    """Planes through the origin, by their normal axes (1: y, 2: z), with a drawing on the positive side; empty without symmetry.
+    """Symmetry planes through the origin, given by their normal `axes` (1: y, 2: z). Only the positive side of each plane is drawn.
 
-    The kind of a motion is a number. Its bits, one for each axis in sequence, are set if the motion is odd across this axis.
+    The kind of a motion is a number with one bit for each axis in sequence. A bit is set if the motion is odd across the plane normal to
+    this axis.
 
     >>> both = Mirrors((1, 2))
     >>> both.copies, both.twist_kinds(np.eye(3)).tolist()  # x, y, z, rx, ry, rz
@@ -37,30 +38,30 @@ class Mirrors:
 
     @property
     def copies(self) -> int:
-        """Number of mirror images in the whole, and of kinds of motion."""
+        """Number of mirror images in the whole, which is also the number of kinds of motion."""
         return 2 ** len(self.axes)
 
     @property
     def images(self) -> Array:
-        """Signs (copies - 1, 3) that mirror a point: across the first axis, the second, both."""
+        """Signs (copies - 1, 3) of x, y and z that mirror a point across the first plane, the second plane, and both planes."""
         odd = np.arange(1, self.copies)
         return np.stack([np.where(self.is_odd(odd, axis), -1.0, 1.0) if axis in self.axes else odd**0.0 for axis in range(3)], axis=1)
 
     def is_odd(self, kinds: Array, axis: int) -> Array:
-        """Return which kinds are odd across one of the axes."""
+        """Return which of the `kinds` are odd across one of the planes."""
         return (kinds >> self.axes.index(axis)) % 2 == 1
 
     def twist_kinds(self, rotation: Array) -> Array:
-        """Return kinds (6,) of translations along and rotations about columns of `rotation`, each parallel to a plane or normal to it."""
+        """Return the kinds (6,) of translations along and rotations about columns of `rotation`, each parallel or normal to the planes."""
         translations = self.kinds(np.abs(rotation[list(self.axes)]) > 0.5)
         return np.concatenate([translations, translations ^ (self.copies - 1)])
 
     def kinds(self, odd: Array) -> Array:
-        """Return the kinds (k,) of motions; `odd` (m, k) contains a row for each axis."""
+        """Return the kinds (k,) of motions; `odd` (m, k) has a row for each plane."""
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Compute products (n, k) of motions over the whole from a `side`; zero if kinds `rows` (n,) and `columns` (k,) differ."""
+        """Compute products (n, k) of motions over the whole from those over a `side`: zero for motions of different kinds."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:
@@ -69,7 +70,7 @@ class Mirrors:
 
 
 def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shape:
-    """Return the positive side of a drawing of `medium 0`, with named cut faces.
+    """Cut a drawing at symmetry planes. Return its positive side, with named cut faces and the material name `medium 0`.
 
     >>> quarter = cut_at_mirrors(occ.Box(occ.Pnt(0, -1, -1), occ.Pnt(1, 1, 1)), Mirrors((1, 2)))
     >>> round(quarter.mass, 9), sorted(face.name for face in quarter.faces if face.name)
@@ -85,7 +86,7 @@ def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shap
 
 
 def is_symmetric(solids: Iterable[occ.TopoDS_Shape], axis: int) -> bool:
-    """Return whether every face of some solids has a mirror image normal to an axis: a face of equal area, with its centre mirrored.
+    """Return whether solids are symmetric about the plane normal to an axis: every face has a mirrored face of equal area.
 
     >>> is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 1), is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 2)
     (True, False)

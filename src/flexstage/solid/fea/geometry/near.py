@@ -16,7 +16,7 @@ Answer = tuple[str, str]
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A geometric test, `ask`, about the item `where`. Questions with equal `key` have the same answer and are evaluated once."""
+    """A geometric test of the item `where`: the function `ask` returns the errors. Questions with the same `key` are evaluated once."""
 
     key: str
     where: str

@@ -41,8 +41,8 @@ class Medium:
     """An elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3].
 
     For a crystal, `tensor` contains the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering shear
-    strains). `young` is then the modulus along x, and `poisson` gives the mean shear modulus of the planes xy and xz; only hinge stubs use
-    both.
+    strains). For a crystal, `young` is the modulus along x, and `poisson` gives the mean shear modulus of the planes xy and xz; only hinge
+    stubs use these two values.
     """
 
     young: float
@@ -73,8 +73,8 @@ class Medium:
 class Piece:
     """One solid to draw: its address (`B1/front`, `platform.plate`), form, medium and frame.
 
-    The form of a link is drawn at the origin of its frame, along x, the solid of a body at its centre. `body` names its body (absent for
-    links).
+    The form of a link is drawn along x, with its centre at the origin of `frame`; the solid of a body is drawn about the origin of `frame`.
+    `body` is the name of the body, or None for a link.
     """
 
     name: str
@@ -85,14 +85,14 @@ class Piece:
 
     @property
     def owner(self) -> str:
-        """Name of its body, or of the link."""
+        """Name of the body to which the piece belongs, or of the link."""
         return self.name if self.body is None else self.body
 
 
 def medium(material: Material, rotation: Array | None = None) -> Medium:
     """Return the medium of a material; for a crystal, the axes of the drawing are the columns of `rotation` (3, 3) in the stage.
 
-    Without `rotation`, they are the axes of the part that orients the crystal, or else those of the stage.
+    Without `rotation`, the drawing has the axes of the part that orients the crystal; without such a part, it has the stage's axes.
 
     >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
     7750.0
@@ -141,7 +141,7 @@ def stack_medium(stack: Piezo) -> Medium:
 
 
 def form_of(link: PlacedLink) -> Form | Finding | None:
-    """Return the form of a link's part, or the error if it has none; `None` for a part without a shape whose behaviour is specified.
+    """Return the form of a link's part; `None` for a part with specified stiffness instead of a shape; an error for a part with neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -162,7 +162,7 @@ def form_of(link: PlacedLink) -> Form | Finding | None:
 
 
 def form_digest(form: Form) -> str:
-    """Return the digest of a form; for a shape of another package, including that package's name and version.
+    """Return the digest of a form. If another package draws the form, the digest includes the package's name and version.
 
     >>> from flexstage.parts.body import Block
     >>> form_digest(Block("steel", (1.0, 1.0, 1.0))) == form_digest(Block("steel", (1.0, 1.0, 2.0)))

@@ -39,7 +39,7 @@ class _Sliver:
 
 
 def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iterator[Finding]:
-    """Yield the slivers of every distinct component, drawn as one solid, and errors of drawing unless `coarse` errors were found before.
+    """Yield the slivers of every distinct component, drawn as one solid. Errors of drawing are omitted if `coarse` errors are known.
 
     >>> list(sliver_findings([]))
     []

@@ -18,7 +18,8 @@ from flexstage.solid.fea.solver.component import Joint, link_joints
 class Stage:
     """The pieces of a stage by address, in the axes of the stage; pieces of the ground have the `body` "ground".
 
-    `boxes` are their outlines, `joints` the two ends of every link, `materials` the names of each piece's material (for a stack its part).
+    `boxes` are the outlines of the pieces, `joints` the two ends of every link, `materials` the name of each piece's material (for a stack,
+    of its part).
     """
 
     assembly: Assembly
@@ -37,9 +38,9 @@ class Stage:
 
 
 def stage_pieces(mechanism: Mechanism) -> Stage:
-    """Return the pieces of a stage; parts with a specified stiffness and no shape are left out.
+    """Return the pieces of a stage. Parts with a specified stiffness instead of a shape have no piece.
 
-    Raises `DesignError` with the names of links that have neither.
+    Raises `DesignError` with the names of links that have neither a shape nor a specified stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = stage_pieces(double_triangle())

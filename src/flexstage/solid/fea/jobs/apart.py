@@ -54,13 +54,13 @@ def contacts_apart(
 ) -> list[tuple[Finding, ...]]:
     """Return the results of `contact_findings` for stages, computed in parallel in separate processes or in those of a `pool`.
 
-    Raises `DesignError` after a crash or a timeout.
+    Raises `DesignError` if a process crashes or takes too long.
     """
     return _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
-    """Compute the result of `step` in a separate process. Raises `DesignError` after a crash or a timeout."""
+    """Compute the result of `step` in a separate process. Raises `DesignError` if it crashes or takes too long."""
     return _results_of([_Drawing(mechanism)], limits)[0]
 
 

@@ -28,7 +28,7 @@ from flexstage.solid.fea.solver.component import Component
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of file in the cache: the ending of its name, and a noun for its content."""
+    """A kind of file in the cache: the ending of the file's name, and a noun for its content."""
 
     suffix: str
     noun: str
@@ -83,7 +83,7 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
 
 
 def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
-    """Return the superelement or hinge stored for a key, `None` if there is none. `where` names it in warnings about a damaged file.
+    """Return the superelement or hinge stored for a key, or `None`. Warnings about a damaged file name the component or hinge `where`.
 
     >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True

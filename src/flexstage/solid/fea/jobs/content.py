@@ -18,7 +18,7 @@ KEPT = 512
 
 @SESSION.keep(KEPT)
 def content(component: Component) -> str:
-    """Digest a component's geometry, media and joints, in its own axes; equal for all instances of a unit.
+    """Return a digest of a component's geometry, media and joints, in its own axes. All instances of a unit have the same digest.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.solid.fea.solver.component import components

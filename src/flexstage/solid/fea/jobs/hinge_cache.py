@@ -39,7 +39,7 @@ class HingeJob(StoredJob):
 
     @property
     def order(self) -> int:
-        """The lowest order with an error estimate."""
+        """The lowest element order for which the error is estimated."""
         return min(self.asked.orders[0] + 1, self.asked.orders[1])
 
     def seconds(self) -> float:
@@ -56,7 +56,7 @@ class HingeJob(StoredJob):
         return needed(counts, self.order, 6)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Return an error if the coarsest mesh does not fit into the memory."""
+        """Return an error if the coarsest mesh needs more memory [bytes] than `limit`."""
         if self.needed(counts) <= limit:
             return None
         what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order} ({limit / 1e9:.3g} GB available)"
@@ -74,7 +74,7 @@ class HingeJob(StoredJob):
 
 
 def hinges_from_cache(forms: Mapping[str, HingeForm], accuracy: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
-    """Return the 6x6 compliance matrices of hinges by name. Missing ones are computed in parallel processes; each is stored immediately.
+    """Return the 6x6 compliance matrices of hinges by name. Missing matrices are computed in parallel processes, and stored immediately.
 
     The solver is needed only for missing matrices. Raises `DesignError` with all failures.
 

@@ -15,7 +15,7 @@ _INSTALL = f"Install {SOLVER_VERSION} with: pip install 'flexstage[solid]' (Pyth
 
 
 def solver_findings() -> tuple[Finding, ...]:
-    """Return problems that prevent NGSolve and netgen from working; empty if they work. Imports them unless a version is missing or wrong.
+    """Return problems that prevent NGSolve and netgen from working. If the installed versions are correct, both are imported as a test.
 
     >>> solver_findings()
     ()

@@ -35,7 +35,7 @@ _COARSER, _COARSEST = 1.25, 12.0
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of vertices, edges, faces and elements of a tetrahedral mesh; the whole consists of `sides` mirror images of the mesh."""
+    """Numbers of vertices, edges, faces and elements of a tetrahedral mesh; the whole component is `sides` mirror images of the mesh."""
 
     vertices: float
     edges: float
@@ -53,7 +53,7 @@ class Counts:
         return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
-        """Estimate the counts if all sizes are larger by a factor: counts of graded meshes decrease with its square, not its cube.
+        """Estimate the counts for sizes larger by a `factor`. Counts of graded meshes are divided by its square, not its cube.
 
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Return counts of a mesh of uniform `order` with as many DOFs as this mesh if a `share` of its elements has one order more.
+        """Return the counts of a mesh of uniform `order` with equal DOFs, if the fraction `share` of this mesh has one order more.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0
@@ -99,9 +99,9 @@ def entries(counts: Counts, order: int) -> float:
 def needed(counts: Counts, order: int, columns: int) -> float:
     """Estimate the peak memory [bytes] of a reduction to `columns` coordinates: process, mesh, matrices, their factors, and basis.
 
-    One side of a symmetric component needs one factor for each kind of motion; there are as many kinds as mirror images. The estimate is
-    within -15 and +40 % of measurements at orders two to four with modes. Without modes only one factor exists at a time, and the estimate
-    is up to 70 % too high.
+    One side of a symmetric component needs one factor for each kind of motion; the number of kinds is the number of mirror images. At
+    orders two to four with modes, the error of the estimate is between -15 and +40 %. Without modes, only one factor exists at a time, and
+    the estimate is up to 70 % too high.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030
@@ -125,7 +125,7 @@ class ReductionWork:
     pace: float = 1.0
 
     def seconds(self, columns: int) -> float:
-        """Estimate the CPU time [s] to factorise, solve and project for a number of coordinates.
+        """Estimate the CPU time [s] of factorisation, solution and projection for a number of coordinates.
 
         >>> round(ReductionWork(Counts.of(5000.0), 126_711, 3.1e10).seconds(90))
         11

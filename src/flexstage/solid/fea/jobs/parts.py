@@ -39,7 +39,7 @@ _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 class Ways:
     """Options of the jobs: the `cache` (`None`: no cache), the receivers of `progress` and of warnings (`notice`), and the `limits`.
 
-    With a `pool`, processes and results remain for later calls. `note` receives lines of text: the jobs and their CPU time before they
+    With a `pool`, later calls use the same processes and results. `note` receives lines of text: the jobs and their CPU time before they
     begin, every result, and after an interruption the number of stored results.
     """
 
@@ -57,10 +57,10 @@ def reduce_parts(
     ways: Ways = Ways(),
     springs: Mapping[str, Array] = _NO_SPRINGS,
 ) -> Parts:
-    """Reduce components; `springs` connect the interfaces of some, by name.
+    """Reduce components. `springs` connect the interfaces of some components; they are given by the component's name.
 
-    Only components missing from the cache need the solver. Each is stored immediately, so that an interrupted computation can resume.
-    Raises `DesignError` with all failures.
+    Only components missing from the cache need the solver. Each superelement is stored immediately, so that an interrupted computation can
+    resume. Raises `DesignError` with all failures.
 
     >>> reduce_parts((), Reduction())
     ()
@@ -71,9 +71,10 @@ def reduce_parts(
 
 
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
-    """Make a job for each component. Ends of its links may deform: an isolated unit and the unit in its stage have the same job.
+    """Make a job for each component. Ends of its links may deform, so that an isolated unit and the unit in its stage have the same job.
 
-    An encased stack has no fixed-interface modes: in them the ceramic would bend without its casing, which joins only the end faces.
+    An encased stack has no fixed-interface modes. In such modes, the ceramic would bend without its casing, which is connected only to the
+    end faces.
 
     >>> reduce_jobs((), Reduction())
     []
@@ -90,7 +91,7 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
 
 @SESSION.keep(KEPT)
 def content_in_stage(part: Component) -> str:
-    """Digest the content of a component's reduction, equal for an isolated unit and the unit in its stage.
+    """Return a digest of a component's content, which is the same for an isolated unit and for the unit in its stage.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> content_in_stage(bar()) == content(with_yielding_ends(bar()))
@@ -100,7 +101,7 @@ def content_in_stage(part: Component) -> str:
 
 
 def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Superelement]]) -> Parts:
-    """Return components with the superelements of their `reduce_jobs`, with plane faces on rigid bodies; equal ones share a superelement.
+    """Return components with their superelements, in which faces on rigid bodies stay plane. Equal components share a superelement.
 
     >>> as_joined((), ())
     ()
@@ -117,7 +118,7 @@ def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Sup
 
 
 def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
-    """Return the results of jobs by key: from the cache, else computed once and stored immediately.
+    """Return the results of jobs by key. Results that are not in the cache are computed once and stored immediately.
 
     First, the computing effort of missing results is estimated from their meshes and reported. Raises `DesignError` if a job fails or would
     exceed memory or time.

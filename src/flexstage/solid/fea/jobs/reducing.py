@@ -32,7 +32,7 @@ _TRIANGLE = 0.433
 def fewest_elements(component: Component, fineness: Fineness) -> float:
     """Compute a lower bound of the number of elements: one for each triangle of a mesh on the lateral surface of necks and blocks.
 
-    It serves to refuse meshes that exceed the available memory before meshing.
+    With this bound, meshes that exceed the available memory are refused before meshing.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -62,7 +62,7 @@ class StoredJob(Job):
 
     @property
     def phase(self) -> str:
-        """Group of the job in announcements."""
+        """Name of the group in which the job is announced."""
         return "hinges"
 
     def summary(self, _found: Any) -> str:
@@ -91,13 +91,13 @@ class ComponentJob(StoredJob):
 
     @property
     def kin(self) -> str:
-        """The content of the component: its mesh is the same at all orders."""
+        """The digest of the component's content; jobs of different orders have the same mesh."""
         return content(self.component)
 
 
 @dataclass(frozen=True, eq=False)
 class Reduce(ComponentJob):
-    """Job that reduces a component; `springs` (6 m, 6 m) connect its interfaces, for modes of a whole stage in one piece."""
+    """Job that reduces a component. `springs` (6 m, 6 m) connect its m interfaces, if a whole stage is one component with modes."""
 
     reduction: Reduction
     springs: Array | None = None
@@ -105,7 +105,7 @@ class Reduce(ComponentJob):
 
     @property
     def phase(self) -> str:
-        """Group of the job in announcements, with the order."""
+        """Name of the group in which the job is announced, with the element order."""
         return f"components at order {self.reduction.fineness.order}"
 
     @property
@@ -126,7 +126,7 @@ class Reduce(ComponentJob):
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
     def seconds(self) -> float:
-        """Return the usual CPU time of the reduction [s]: from its measured work if known, else that of a small job."""
+        """Return the CPU time of the reduction [s], estimated from its measured work; if this is unknown, the usual time of a small job."""
         return super().seconds() if self.measured is None else self.measured.seconds(self.columns)
 
     def summary(self, found: Superelement) -> str:
@@ -134,11 +134,11 @@ class Reduce(ComponentJob):
         return f"{self.name} at order {self.reduction.fineness.order}: {found.freedoms:,} unknowns"
 
     def needed(self, counts: Counts) -> float:
-        """Return the memory of the reduction [bytes]."""
+        """Return the memory that the reduction needs [bytes]."""
         return needed(counts, self.reduction.fineness.order, self.columns)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Return an error if the job does not fit into the memory, with an order or fineness that fits; for thin parts with their size."""
+        """Return an error if the job needs more memory than `limit`. It names an order or fineness that fits, and sizes of thin parts."""
         found = refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
         forms = ((piece.name, piece.form) for piece in self.component.pieces if is_leaf(piece.form) or is_notch(piece.form))
         wide = {name: form.throat for name, form in forms if isinstance(form, Shaped)}
@@ -179,7 +179,7 @@ class Reduce(ComponentJob):
         )
 
     def work(self, call: Call) -> Superelement:
-        """Mesh and reduce the component, after requests for the memory of the surface and of the mesh; returns the stored superelement."""
+        """Mesh and reduce the component. Before meshing and before reduction, wait for memory. Return the superelement."""
         from flexstage.solid.fea.solver.reduce import reduce_mesh
 
         call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness) / self.sides, self.sides))
@@ -190,7 +190,7 @@ class Reduce(ComponentJob):
 
 @dataclass(frozen=True, eq=False)
 class MeasureWork(Job):
-    """Job that meshes one component to estimate the work of its reductions in advance; the process keeps the mesh for them."""
+    """Job that meshes one component to estimate the work of its reductions in advance; the process keeps the mesh for the reductions."""
 
     reductions: tuple[Reduce, ...]
 
@@ -203,7 +203,7 @@ class MeasureWork(Job):
 
     @property
     def kin(self) -> str:
-        """The content of the component."""
+        """The digest of the component's content."""
         return self.reductions[0].kin
 
     def work(self, call: Call) -> tuple[ReductionWork, ...]:

@@ -32,7 +32,7 @@ _TELL_EVERY = 0.5
 class Limits:
     """Limits of the resources of jobs.
 
-    `memory` [bytes] is for all jobs (default: the free memory), `seconds` for each job, `mesh_seconds` for each attempt at a mesh.
+    `memory` [bytes] limits all jobs together (default: the free memory), `seconds` each job, and `mesh_seconds` each attempt at a mesh.
     `workers` is the number of simultaneous jobs (default: one for each core, at most two).
     """
 
@@ -46,9 +46,9 @@ AnyJob = TypeVar("AnyJob", bound=Job)
 
 
 class Pool:
-    """Processes kept between groups of jobs, because loading the solver takes longer than a small job; `results` maps keys to results.
+    """Processes that are kept between groups of jobs, because loading the solver takes longer than a small job; `results` are by key.
 
-    The processes end with the context of the pool.
+    The processes end when the context of the pool is left.
 
     >>> with Pool() as pool:
     ...     work_all([], print, Limits(), pool=pool)
@@ -68,7 +68,7 @@ class Pool:
             self.end(worker)
 
     def worker(self, job: Job) -> Worker:
-        """Return a process for a job: an idle one, preferably after a similar job, else a new one. Raises `OSError` if none can start."""
+        """Return an idle process for a job, preferably after a similar job, or a new process. Raises `OSError` if none can start."""
         for each in self.idle:
             if each.process.poll() is not None:
                 self.end(each)

@@ -30,7 +30,7 @@ _RECORDS = {record.__name__: record for record in (Superelement, Skin, HingeSoli
 def program() -> str:
     """Return the identity of the program: flexstage with a digest of its solid model's code, NGSolve, and the file format.
 
-    Results of other code are therefore never used.
+    Therefore results that were stored by other program code are never used.
 
     >>> program().endswith(f"with NGSolve {SOLVER_VERSION}, format {FORMAT}")
     True
@@ -42,7 +42,7 @@ def program() -> str:
 
 
 def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
-    """Return the content of a file with a superelement, a hinge or nothing, stored for the content `key`.
+    """Return the bytes of a file that stores a superelement, a hinge, or only the `key` of its content.
 
     >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
     >>> from_bytes(to_bytes(small, "key"), "key").freedoms
@@ -57,7 +57,7 @@ def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
 
 
 def from_bytes(data: bytes, key: str) -> Any:
-    """Return the value stored by `to_bytes`, or the problem as a string: damaged, of another version, of other content.
+    """Return the value stored by `to_bytes`, or a string if the file is damaged, of another version, or of other content.
 
     >>> from_bytes(b"nonsense", "key")
     'it is damaged: unknown header'

@@ -26,7 +26,7 @@ _PATIENCE = 60.0
 class Call:
     """Environment of a job: functions for progress and memory, and the number of the first attempt at a mesh.
 
-    `ask` waits until memory for an expected or existing mesh is available.
+    `ask` waits until the memory for a mesh with certain counts is available.
     """
 
     report: Report = silent
@@ -43,7 +43,7 @@ class Job(ABC):
     @property
     @abstractmethod
     def name(self) -> str:
-        """User's name of the object of the job."""
+        """The user's name for the component or hinge that the job computes."""
 
     @property
     def mark(self) -> str:
@@ -52,7 +52,7 @@ class Job(ABC):
 
     @property
     def kin(self) -> str:
-        """Key of similar jobs, if a process does a job faster after a similar one; empty otherwise."""
+        """Common key of similar jobs, if a process does a job faster after a similar job; empty otherwise."""
         return ""
 
     def seconds(self) -> float:
@@ -64,7 +64,7 @@ class Job(ABC):
         """Compute the result."""
 
     def needed(self, _counts: Counts) -> float:
-        """Return the memory for a mesh [bytes]."""
+        """Return the memory that a mesh with these counts needs [bytes]."""
         return 0.0
 
     def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
@@ -73,7 +73,7 @@ class Job(ABC):
 
 
 def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> Any:
-    """Run a job within a memory [bytes] and a time [s]: report stages and counts of meshes, and wait for the memory of each mesh.
+    """Run a job with limits of memory [bytes] and time [s]. Report its stages and the counts of meshes; wait for the memory of each mesh.
 
     Raises a `DesignError` with the remedy if the solver does not load.
     """

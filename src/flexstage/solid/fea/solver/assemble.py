@@ -104,9 +104,9 @@ def linear_model(
 ) -> LinearModel:
     """Join reduced components to one linear model.
 
-    The coordinates are the twists of rigid bodies and of the joints between elastic components (stage axes, at the joint). Then follow the
-    warps of the joints' faces (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` if the joined
-    stage has a rigid-body motion.
+    The first coordinates are the twists of rigid bodies and of joints between elastic components (at the joint, in stage axes). The warps
+    of the joints' faces follow (in the joint's own axes), then the internal coordinates of each component. Raises `DesignError` if the
+    joined stage has a rigid-body motion.
     """
     model = _join(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))
@@ -155,7 +155,7 @@ def _seats(placed: tuple[Placed, ...]) -> Iterator[tuple[str, tuple[Array, Array
 
 
 def place_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[Placed, ...]:
-    """Return components with the operators from the coordinates of their `linear_model` to their own, for displacement fields.
+    """Return the components of a `linear_model` with operators that map the model's coordinates to the component's coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

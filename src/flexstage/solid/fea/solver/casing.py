@@ -25,7 +25,7 @@ def is_encased(form: object) -> bool:
 def casing(link: PlacedLink) -> Array | None:
     """Return the stiffness (6, 6) of a stack's casing about its centre: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
 
-    B is the specified bending rigidity less E I of the ceramic. Along the axis the stiffness is zero, because the casing slides. The axes
+    B is the specified bending rigidity minus E I of the ceramic. Along the axis the stiffness is zero, because the casing slides. The axes
     are those of the stack. Without a casing, the result is `None`. Raises `DesignError` if the specified rigidity is below that of the
     ceramic.
 
@@ -53,9 +53,9 @@ def casing(link: PlacedLink) -> Array | None:
 
 
 def end_face_twist(component: Component, link: PlacedLink) -> Array:
-    """Return the operator (6, 6 m) from twists of m interfaces to the relative twist of a stack's end faces, second less first.
+    """Return the operator (6, 6 m) that maps twists of m interfaces to the twist of a stack's second end face relative to its first.
 
-    The relative twist is at the stack's centre, in its frame.
+    The relative twist is at the stack's centre, in the stack's frame.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

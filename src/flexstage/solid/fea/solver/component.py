@@ -38,9 +38,10 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """A joint at the boundary of a component: its own end face, or the imprint (`footprint`) of another component's link on its body.
+    """A joint at the boundary of a component: the end face of one of its links, or the imprint (`footprint`) of another component's link.
 
-    It `yields` if both sides are elastic: the face deforms, equally on both sides. End caps of stacks and rigid bodies keep it plane.
+    A joint `yields` if both sides are elastic: its face then deforms equally on both sides. End caps of stacks and rigid bodies keep the
+    face plane.
     """
 
     joint: Joint
@@ -53,8 +54,8 @@ class Interface:
 class Component:
     """One solid in its own axes: `pieces`, the `interfaces` with its neighbours, the joints `fixed` to the ground.
 
-    `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is its frame in the stage. `seats` are the ends,
-    on the component, of parts without a shape.
+    `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is the component's frame in the stage. `seats`
+    are those ends of parts without a shape that are on the component.
     """
 
     name: str
@@ -67,7 +68,7 @@ class Component:
 
     @property
     def floats(self) -> bool:
-        """Whether it has no joint: only parts without a shape support it, so that it can move as a whole."""
+        """Whether the component has no joint: it can move as a whole, because only parts without a shape support it."""
         return not self.interfaces and not self.fixed
 
 
@@ -81,7 +82,7 @@ class _Graph:
 
 
 class Cut(Enum):
-    """Cuts of a stage: at units and stacks, or none (stacks keep their rigid end caps)."""
+    """Where a stage is cut into components: at units and stacks, or nowhere. Stacks always have rigid end caps."""
 
     UNITS = "units"
     NONE = "none"
@@ -108,9 +109,9 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
 
 
 def groups(component: Component) -> dict[str, tuple[int, ...]]:
-    """Collect the pieces (by index) of each link and each body, in order.
+    """Collect the pieces (by index) of each link and each body.
 
-    The order is the same in every instance, so that one superelement serves all.
+    Links and bodies have the same sequence in every instance of a unit, so that one superelement serves all instances.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> groups(bar())
@@ -123,9 +124,10 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
 
 
 def with_yielding_ends(component: Component) -> Component:
-    """Return the same component with link ends that deform on rigid bodies, as on elastic ones.
+    """Return the same component, but with link ends that may deform even on rigid bodies.
 
-    An isolated unit ends on a rigid output, but on an elastic platform in its stage. If all warps are zero, both are equal.
+    The output of an isolated unit is rigid, while the unit in its stage ends on an elastic platform. If all warps are zero, the two
+    components are equal.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields
@@ -141,7 +143,7 @@ def with_yielding_ends(component: Component) -> Component:
 
 
 def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
-    """Return the two joints of a link: with its first body, at the end face towards -x of the link frame, and with its second, at +x.
+    """Return the two joints of a link: with its first body at the end face towards -x of the link frame, with its second body at +x.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> link = next(iter(expand(parallelogram()).links.values()))

@@ -18,10 +18,10 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """Forces and momenta of a group of elements in k motions, on its degrees of freedom `rows` (m,).
+    """Elastic forces and momenta of a group of elements in k motions, on the group's degrees of freedom `rows` (m,).
 
-    `forces` (m, k) are the elastic forces of `strained` (m, k), the motions less their rigid part. `momenta` (m, k) belong to the `motions`
-    (m, k).
+    `strained` (m, k) are the motions minus their rigid part, and `forces` (m, k) the elastic forces in them. `momenta` (m, k) are those of
+    the complete `motions` (m, k).
     """
 
     name: str
@@ -51,7 +51,7 @@ class Assembled:
 
 
 def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assembled, ...]:
-    """Assemble groups of elements (masks), those without a common degree of freedom together."""
+    """Assemble groups of elements (masks). Groups without a common degree of freedom are assembled together."""
     sets = _group_by_law([Group(name, elements, degrees_of(space, elements)) for name, elements in groups.items()])
     together = [np.any([group.elements for group in alike], axis=0) for alike in sets]
     return tuple(
@@ -61,9 +61,10 @@ def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assemble
 
 
 def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iterator[Contribution]:
-    """Yield the contributions of groups of elements in motions (n, k), in any order.
+    """Yield the contributions of groups of elements in the motions `basis` (n, k), in any sequence.
 
-    Rigid parts are subtracted before elastic forces are computed: their rounding errors would exceed the forces of a thin leaf.
+    Rigid motions of a group are subtracted before elastic forces are computed; otherwise rounding errors would exceed the forces of a thin
+    leaf.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field

@@ -47,31 +47,31 @@ class Field:
 
     @property
     def whole_size(self) -> int:
-        """Number of DOFs of the whole, if the mesh is one side: those on a mirror coincide with their images."""
+        """Number of DOFs of the whole, of which the mesh may be one side; DOFs on a mirror are counted once."""
         mirrors = self.meshed.mirrors
         own = sum((nodes_on(self, MIRRORS[axis]).astype(np.int64) for axis in mirrors.axes), np.zeros(self.size // 3, dtype=np.int64))
         return 3 * int(np.sum(mirrors.copies >> own))
 
     @cached_property
     def members(self) -> tuple[Array, Array]:
-        """All pairs of a function and its element, element by element: functions (m,) of one component of the space, elements (m,)."""
+        """All pairs of a basis function and its element: functions (m,) of one component of the space, and ascending elements (m,)."""
         scalar, count = self.space.components[0], self.meshed.mesh.ne
         nodes = [np.array(scalar.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)), dtype=np.int64) for number in range(count)]
         return np.concatenate(nodes), np.repeat(np.arange(count), [len(each) for each in nodes])
 
     @cached_property
     def places(self) -> Array:
-        """Vertex means (elements, 3) of all elements [m]."""
+        """Mean vertex position (elements, 3) of each element [m]."""
         return centroids(self.meshed.mesh)
 
     @cached_property
     def free(self) -> Array:
-        """Mask of degrees of freedom (n,) off the fixed faces."""
+        """Mask (n,) of the degrees of freedom that are not on fixed faces."""
         return np.array([bool(bit) for bit in self.space.FreeDofs()], dtype=bool)
 
     @cached_property
     def linear(self) -> tuple[Array, Array]:
-        """Coefficients (n / 3,) of the function 1 and (n / 3, 3) of the coordinates [m], in one component of the space."""
+        """Coefficients in one component of the space: of the function 1 (n / 3,), and of the functions x, y and z [m] (n / 3, 3)."""
         function, place = ngsolve.GridFunction(self.space.components[0]), np.empty((self.size // 3, 3))
         for axis, coordinate in enumerate(_coordinates()):
             function.Set(coordinate, dual=False)
@@ -81,11 +81,11 @@ class Field:
 
     @cached_property
     def fronts(self) -> Fronts:
-        """The elimination order of its free nodes."""
+        """The elimination order of the free nodes."""
         return dissect(grid(self), self.free.reshape(3, -1)[0])
 
     def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
-        """Apply Hooke's law: 2 mu strain + lambda tr(strain) I, or with the tensor of a crystal [Pa, with strains per m]."""
+        """Apply Hooke's law, 2 mu strain + lambda tr(strain) I, or the tensor of a crystal [Pa if the strain is dimensionless]."""
         if self.tensor is not None:
             pairs = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
             found = self.tensor * ngsolve.CoefficientFunction(tuple(strain[i, j] + (0.0 if i == j else strain[j, i]) for i, j in pairs))
@@ -94,7 +94,7 @@ class Field:
 
 
 def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
-    """Build the displacement space on a mesh with the faces `held` fixed, of this `order`, and of one order more in `finer` elements.
+    """Build the displacement space of this `order` on a mesh with the faces `held` fixed; `finer` elements have one order more.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -148,7 +148,7 @@ def _escape(name: str) -> str:
 
 
 def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
-    """Compute the small strain of a displacement, per mm.
+    """Compute the small strain: derivatives of a displacement with respect to coordinates in mm.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -163,7 +163,7 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 
 
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """Build int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` it can only be applied to vectors.
+    """Build the form int stress(u) : strain(v) dV [N/m] over some elements (mask) or all. `assemble=False`: only for `apply_form`.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -181,7 +181,7 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """int rho u . v dV [kg] as the sum of `scalar` matrices (n / 3, n / 3), equal for the three components, without coupling."""
+    """The form int rho u . v dV [kg]: a sum of `scalar` matrices (n / 3, n / 3), one block for each of the three uncoupled components."""
 
     scalar: tuple[Any, ...]
 
@@ -252,7 +252,7 @@ def _apply_by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector
 
 
 def stroke_force(space: Field, frame: Frame, length: float) -> Array:
-    """Compute forces (n,) of a unit free stroke: int C e0 : strain(v) dV with imposed strain e0 = x x^T / length along the frame's x axis.
+    """Compute the forces (n,) of a unit free stroke: int C e0 : strain(v) dV; the strain e0 = x x^T / length is along the frame's x axis.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -274,9 +274,9 @@ def stroke_force(space: Field, frame: Frame, length: float) -> Array:
 
 
 def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
-    """Return the six rigid motions (n, 6) about a frame's origin in its axes; with `faces`, only on these faces.
+    """Return the six rigid motions (n, 6) about a frame's origin, in the frame's axes; if `faces` is specified, only on these faces.
 
-    They are translations of 1 m and rotations of 1 rad.
+    The motions are translations of 1 m and rotations of 1 rad.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -296,9 +296,10 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 
 
 def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array:
-    """Return the twelve motions (n, 12) of a face normal to a frame's x axis that are linear or quadratic over it, and not rigid.
+    """Return all twelve non-rigid motions (n, 12) that are linear or quadratic over a face; the face is normal to a frame's x axis.
 
-    In the frame's axes, with y and z over `size` [m], they are in-plane strains and shear, then u_x, u_y and u_z equal to y^2, y z and z^2.
+    Here y and z are divided by `size` [m]. In the frame's axes, the first three motions are in-plane strains and shear. In the other nine,
+    u_x, u_y or u_z is y^2, y z or z^2.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -319,7 +320,7 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
 
 
 def warp_kinds(mirrors: Mirrors, frame: Frame) -> Array:
-    """Return the kinds (12,) of the motions of `warping_motion` about a mesh's mirrors.
+    """Return the kinds (12,) of the motions of `warping_motion`: which are odd across the `mirrors` of a mesh (see `Mirrors`).
 
     >>> warp_kinds(Mirrors((1,)), Frame(np.eye(3), np.zeros(3))).tolist()
     [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]
@@ -404,10 +405,10 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 
 
 def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
-    """Compute rows (6, n) of the mean twist about a point, in the field's axes, of the surface elements `faces` (mask) around it.
+    """Compute rows (6, n) that give the mean twist of the surface `faces` (mask of elements) about a point, in the field's axes.
 
-    The weight of the surface is exp(-(d^2 - d0^2) / reach^2), with d the distance from the point and d0 the smallest distance. On a flat
-    face the weight is a bell around the foot of the perpendicular; on a ball about the point it is uniform.
+    The mean has the weight exp(-(d^2 - d0^2) / reach^2), where d is the distance from the point and d0 the smallest distance. On a flat
+    face, the weight is a bell around the foot of the perpendicular; on a sphere about the point, it is uniform.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -482,7 +483,7 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
 
 
 def held_at_mirrors(space: Field, kind: int) -> Array:
-    """Return a mask (n,) of DOFs that are zero at a mesh's mirrors in motions of a kind: normal ones if even, tangential ones if odd.
+    """Return a mask (n,) of DOFs at a mesh's mirrors that are zero in motions of a kind: normal DOFs if it is even, tangential DOFs if odd.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -509,7 +510,7 @@ class Columns:
 
     @staticmethod
     def of(values: Array) -> Columns:
-        """Make columns of one kind, without mirrors."""
+        """Make columns for a mesh without mirrors, where all motions are of one kind."""
         return Columns(values, np.zeros(values.shape[1], dtype=np.int64))
 
     def kind(self, kind: int) -> Array:
@@ -535,7 +536,7 @@ KindSolver = Callable[[Columns], Array]
 
 
 def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
-    """Return a solver with the sum of the forms' matrices for forces of all kinds, with one factor for each kind.
+    """Return a solver for the sum of the forms' matrices and for forces of all kinds. It keeps one factor for each kind.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -549,7 +550,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
 
 
 def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
-    """Solve once with the sum of the forms' matrices for forces of some kinds: kind after kind, without keeping a factor.
+    """Compute displacements from forces with the sum of the forms' matrices. Kinds are solved one after another; no factor is kept.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -572,9 +573,9 @@ def _solve_each(forces: Columns, solver: Callable[[int], Solver]) -> Array:
 
 
 def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver:
-    """Return a solver with a form's matrix on the free DOFs: from columns (n, k) of forces to displacements, zero at fixed DOFs.
+    """Return a solver for a form's matrix on the free DOFs: a function of forces (n, k) that returns displacements, zero at fixed DOFs.
 
-    DOFs that are zero at the mirrors in motions of a `kind` are fixed in addition to those of the field.
+    In addition to the fixed DOFs of the field, DOFs at the mirrors that are zero in motions of a `kind` are fixed.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -612,7 +613,7 @@ def _apply_held(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], obj
 
 
 def grid(space: Field) -> Grid:
-    """Return the elements and nodes of a field, for dissection.
+    """Return the elements and nodes of a field, as input for `dissect`.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

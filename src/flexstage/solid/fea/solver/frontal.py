@@ -38,7 +38,7 @@ _SMALL = 40
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Input of the dissection: `faces` (n, 4) of elements, their `places` (n, 3), and all pairs (m,) of a node and its element.
+    """Input of `dissect`: `faces` (n, 4) and `places` (n, 3) of n elements, and all pairs (m,) of a node and its element.
 
     `count` is the number of nodes.
     """
@@ -89,7 +89,7 @@ class _Factor:
 
 @dataclass(frozen=True, eq=False)
 class Fronts:
-    """The elimination order: free nodes by rank, and the fronts, children before their parent."""
+    """The elimination order: the free nodes in the sequence of elimination, and the fronts, with children before their parent."""
 
     nodes: Array
     fronts: tuple[_Front, ...]
@@ -101,13 +101,13 @@ class Fronts:
 
     @property
     def operations(self) -> float:
-        """Operations of the factorisation: n^3 / 3 + n^2 m + n m^2 for n own and m later degrees of freedom of each front."""
+        """Number of operations: the sum of n^3 / 3 + n^2 m + n m^2 over all fronts, with n eliminated and m coupled DOFs."""
         pairs = ((3.0 * (front.last - front.first), 3.0 * len(front.beyond)) for front in self.fronts)
         return sum(own * (own * own / 3.0 + own * beyond + beyond * beyond) for own, beyond in pairs)
 
 
 def dissect(grid: Grid, free: Array) -> Fronts:
-    """Compute the elimination order of free nodes (mask): elements are cut in two repeatedly, with few faces at the cut."""
+    """Compute the elimination order of free nodes (mask) by nested dissection: elements are cut in two repeatedly, through few faces."""
     leaves, spans = _cuts(grid.faces.tobytes(), grid.places.tobytes())
     leaf = np.repeat(np.arange(len(leaves)), [len(each) for each in leaves])[np.argsort(np.concatenate(leaves))]
     owner, low = _owners(grid, leaf, spans)
@@ -234,11 +234,11 @@ class Factorised:
 
 
 def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Iterator[Factorised]:
-    """Factorise a sum of matrices, positive definite on the free nodes, for each of several sets of `held` degrees of freedom.
+    """Factorise a sum of matrices, positive definite on the free nodes, once for each set of `held` (fixed) degrees of freedom.
 
-    Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are ordered by components: those of all nodes along x,
-    then along y, then along z; every pair of nodes with an entry has all nine. Sets are rows of the masks `held` (k, n); held DOFs are
-    decoupled. Sets share a front if it and its children have no held DOFs. The sets are factorised one after another, when needed: only
+    Matrices are `scipy.sparse.csr_array` with both triangles. The DOFs of all nodes along x come first, then those along y, then along z.
+    If a pair of nodes has an entry, all nine entries are stored. Each row of `held` (k, n) is the mask of one set; held DOFs are decoupled.
+    Sets share a front if neither the front nor its children have held DOFs. The sets are factorised one after another, when needed; only
     results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)

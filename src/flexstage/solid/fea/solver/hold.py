@@ -40,7 +40,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions for unit twists of `faces` (n, 6 m), for their unit `warps` (n, w), for loads `within` with fixed faces; and `solve`."""
+    """Motions due to unit twists of `faces` (n, 6 m), to unit `warps` (n, w), and to loads `within` with faces fixed; and `solve`."""
 
     faces: Columns
     warps: Columns
@@ -49,7 +49,7 @@ class Support:
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
-    """Return whether an interface's motions, not only their mean, are constrained: by option, or as a stack's end cap.
+    """Return whether all motions of an interface are constrained, not only the mean: according to `hold`, or at a stack's end cap.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
@@ -60,9 +60,9 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
 
 
 def support(component: Component, space: Field, reduction: Reduction, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
-    """Constrain a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` fixes its rigid and grounded faces.
+    """Constrain a component's interfaces. `elastic` and `mass` are stiffness and inertia; rigid and grounded faces are fixed in `space`.
 
-    The same call computes the responses to `loads` within the component. If the factor is not needed later, it is not kept.
+    Responses to `loads` within the component are computed with the same factor, which is not kept unless it is needed later.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field, inertia, stiffness

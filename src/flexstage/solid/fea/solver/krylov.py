@@ -21,7 +21,7 @@ Operator = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Pencil:
-    """Operators `mass` and `inverse` (of the stiffness) for vectors of this size."""
+    """Operators `mass` and `inverse` (inverse of the stiffness) for vectors of length `size`."""
 
     mass: Operator
     inverse: Operator
@@ -29,9 +29,9 @@ class Pencil:
 
 
 def lowest_modes(pencils: Sequence[Pencil], count: int) -> list[Array]:
-    """Compute the `count` lowest modes of several pencils together, (size, k) for each: block Lanczos with full orthogonalisation.
+    """Compute the `count` lowest modes of several pencils together by block Lanczos with full orthogonalisation; (size, k) for each pencil.
 
-    There are fewer modes if the masses have a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
+    There are fewer modes if the rank of the mass matrices is below `count`. Golub and Underwood, in Mathematical Software III (1977), 361.
 
     >>> stiffness = np.arange(1.0, 41.0)[:, None]
     >>> pencils = [Pencil(lambda x: x, lambda x: x / stiffness, 40), Pencil(lambda x: x, lambda x: x / (0.5 + stiffness), 40)]

@@ -83,9 +83,9 @@ def reduce_mesh(
 ) -> Superelement:
     """Assemble and reduce a meshed component, with progress reports.
 
-    If `springs` (6 m, 6 m) connect its interfaces, the modes are those of the component with free interfaces joined by the springs, instead
-    of the fixed-interface modes. A whole stage in one piece then has its exact modes. Its statics is exact only for strokes and wrenches on
-    the platform, which saves most of the static responses of so large a mesh.
+    If `springs` (6 m, 6 m) connect the interfaces, the modes are computed with interfaces that are free except for the springs, instead of
+    with fixed interfaces. If a whole stage is one component, these modes are exact. The statics of such a component is exact only for
+    strokes and wrenches on the platform; other static responses are not computed, because the mesh is large.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

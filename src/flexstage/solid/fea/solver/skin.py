@@ -33,10 +33,10 @@ _NEAR = 1e-9
 
 
 def skin(space: Field, motions: Columns) -> Skin:
-    """Build the surface of a field's mesh with displacement and stress of motions; with mirrors, the surface of the whole.
+    """Build the surface of a field's mesh, with displacement and stress in `motions`; for a mesh with mirrors, the surface of the whole.
 
-    Stresses are evaluated within each triangle and extrapolated to its corners. At a vertex they are means over its triangles, weighted by
-    the Jacobian, because strains of a nearly folded element have no meaning.
+    Stresses are evaluated within each triangle and extrapolated to its corners. The stress at a vertex is the mean over its triangles,
+    weighted by the Jacobian, because strains of a nearly folded element are meaningless.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field

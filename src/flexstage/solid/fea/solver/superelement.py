@@ -15,8 +15,8 @@ from flexstage.solid.fea.meshing.fineness import WARPS
 class Skin:
     """The surface for pictures: `vertices` (v, 3) [m] and `triangles` (t, 3), with the piece (index) behind each triangle.
 
-    For each of n coordinates, `motion` (v, 3, n) contains the displacement of the vertices, `stress` (v, 6, n) the stress at them as xx,
-    yy, zz, xy, yz, zx [Pa].
+    For each of n coordinates, `motion` (v, 3, n) has the displacements of the vertices, and `stress` (v, 6, n) the stress at the vertices
+    [Pa] as xx, yy, zz, xy, yz, zx.
     """
 
     vertices: Array
@@ -28,14 +28,14 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A reduced component in its own axes. Its n coordinates: a twist of each interface (at its own point), `warps`, internal coordinates.
+    """A reduced component in its own axes. Its n coordinates are the twist of each interface at this interface, `warps`, and internal ones.
 
-    `stiffness` and `inertia` (n, n) have an entry for each link and body, by position in the component. `bodies` (6, n) are mean twists of
-    bodies, `body_inertia` (6, 6) the inertia for these twists, which `inertia` includes. `resultants` (6, n) are wrenches at links' centres
-    in their frames. `strokes` (n,) are forces of a unit free stroke, `free_strokes` (n,) the coordinates of this stroke without constraint.
-    `rigid` (n, 6) is a rigid motion about the component's origin (only without fixed joints), `carried` (n, 6) the inertial forces of a
-    unit rigid acceleration. `seats` (6, n) are the twists, at their points, of the surface around the ends of parts without a shape. A
-    floating component has one interface: its own rigid motion about the reference of its first body.
+    `stiffness` and `inertia` have a matrix (n, n) for each link and body. `bodies` (6, n) give the mean twists of bodies; `inertia`
+    includes the inertia `body_inertia` (6, 6) for these twists. `resultants` (6, n) give the wrenches at the centres of links, in the
+    links' frames. `strokes` (n,) are the forces of a unit free stroke; `free_strokes` (n,) are the coordinates after this stroke without
+    constraint. `rigid` (n, 6) are the rigid motions about the component's origin (only without fixed joints); `carried` (n, 6) are the
+    inertial forces of unit rigid accelerations. `seats` (6, n) give the twist of the surface around each end of a part without a shape. A
+    floating component has one interface: its own rigid motion about the reference point of its first body.
     """
 
     interfaces: int
@@ -56,7 +56,7 @@ class Superelement:
 
     @property
     def boundary_coordinates(self) -> int:
-        """Number of coordinates shared with neighbours: all but the internal ones."""
+        """Number of coordinates shared with neighbours: all except the internal coordinates."""
         return 6 * self.interfaces + self.warps
 
     @property
@@ -66,7 +66,7 @@ class Superelement:
 
 
 def hold_faces(element: Superelement, held: Sequence[bool]) -> Superelement:
-    """Return a superelement with zero warps of some deformable faces; `held` marks these faces, in order.
+    """Return a superelement without the warps of some deformable faces, which stay plane; `held` marks these faces.
 
     >>> bare = Skin(*[np.zeros((0, 20))] * 5)
     >>> whole = Superelement(1, 12, {"a": np.eye(20)}, {}, {}, {}, {}, {}, {}, np.zeros((20, 6)), np.zeros((20, 6)), bare, 3, 1)

@@ -12,9 +12,9 @@ from flexstage.solid.fea.solver.component import groups
 
 
 def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
-    """Compute a component's coordinates (n, k) for its stress, from the model's (N, k) and its stacks' `strokes` (k,) [m] by link.
+    """Compute the coordinates (n, k) of a component that cause stress, from the model's `motion` (N, k) and the stacks' `strokes` (k,) [m].
 
-    A freely expanding stack has no stress, so its free stroke is subtracted.
+    A freely expanding stack has no stress; therefore its free stroke is subtracted.
 
     >>> from types import SimpleNamespace as Of
     >>> stack = Of(name="B/pzt", body=None)
@@ -52,7 +52,7 @@ def stresses(item: Placed, coordinates: Array) -> Array:
 
 
 def von_mises(stress: Array) -> Array:
-    """Compute the von Mises stress (...) of stresses (..., 6), xx, yy, zz, xy, yz, zx: sqrt((differences squared)/2 + 3 (shears squared)).
+    """Compute the von Mises stress (...) from the stress components (..., 6): xx, yy, zz, xy, yz, zx.
 
     >>> von_mises(np.array([[2.0, 0, 0, 0, 0, 0], [0, 0, 0, 1.0, 0, 0]])).round(9).tolist()
     [2.0, 1.732050808]
@@ -78,7 +78,7 @@ def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
 
 
 def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
-    """List every link and body of a component, by its name in this instance, with the vertices (indices) of its skin.
+    """List the links and bodies of a component with the vertices (indices) of their skin. Names are those in this instance of the unit.
 
     >>> from types import SimpleNamespace as Of
     >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))

@@ -35,10 +35,10 @@ class End:
 
 @dataclass(frozen=True, eq=False)
 class ShapelessContribution:
-    """Contribution of a part without a shape: stiffness for its `strain`, `inertia` for the motion of its ends and inner coordinates.
+    """Contribution of a part without a shape: stiffness for its `strain`, and `inertia` for the motion of its ends and inner coordinates.
 
-    `carried` (r, 6) is this motion when everything moves rigidly about the stage's origin. `passed` (w, s) maps the forces (s,) of its
-    strain to the output wrenches (w,). `damping` is its viscous damping for the strain.
+    `carried` (r, 6) is the motion of the part's ends and inner coordinates if the whole stage moves rigidly about its origin. `passed` (w,
+    s) maps the forces (s,) due to the part's strain to the output wrenches (w,). `damping` is the part's viscous damping for this strain.
     """
 
     strain: Contribution
@@ -61,7 +61,7 @@ def stated_of(link: PlacedLink) -> Stated | None:
 
 
 def ends(assembly: Assembly) -> Iterator[End]:
-    """List the ends, on bodies that move, of all parts without a shape, in order.
+    """List the ends of all parts without a shape, except ends on the ground.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -81,7 +81,7 @@ def ends(assembly: Assembly) -> Iterator[End]:
 
 
 def inner_coordinates(element: PlacedSuperelement) -> tuple[str, ...]:
-    """Name a superelement's modes with its ports fixed."""
+    """Return names for the fixed-port modes of a superelement."""
     return tuple(f"{element.name}.mode{number + 1}" for number in range(len(_condensed(element).squares)))
 
 
@@ -90,7 +90,7 @@ Twist = Callable[[str, str, Frame], Array]
 
 
 def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float) -> ShapelessContribution:
-    """Build the tie of a link between two bodies.
+    """Build the contribution of a link without a shape between two bodies.
 
     >>> spring = Stated(np.eye(6), np.zeros((12, 12)))
     >>> from flexstage.cases.registry import case
@@ -111,7 +111,7 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
 
 
 def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
-    """Build the tie of a superelement: twists of its ports relative to the first port's body, and its modes with rows `inner` (m, N)."""
+    """Build the contribution of a superelement. Its strain is the twists of ports relative to the first, and the modes `inner` (m, N)."""
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
@@ -147,7 +147,7 @@ def _all_ports(frames: Sequence[Frame]) -> Array:
 
 
 def stated_links(assembly: Assembly) -> dict[str, str]:
-    """Return the links with specified behaviour, with the kind of their part.
+    """Return the links without a shape that have specified behaviour, and the kind of part of each link.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -159,7 +159,7 @@ def stated_links(assembly: Assembly) -> dict[str, str]:
 
 
 def in_words(stated: Mapping[str, str]) -> str:
-    """Count the links of each kind with specified behaviour, as text; empty without any.
+    """Return the numbers of links with specified behaviour, by kind of part, in words; empty without such links.
 
     >>> in_words({"a": "spring", "b": "spring", "motor": "voice_coil"})
     '2 springs, 1 voice coil as specified'
