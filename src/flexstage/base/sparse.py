@@ -17,7 +17,7 @@ from flexstage.base.number import Array
 class Sparse:
     """Real matrix (r, n) that is zero except for `columns` (c,) with `values` (r, c). Values of repeated columns are added.
 
-    It can replace a dense operator (r, n). Its products with arrays are arrays; other numpy functions use the dense matrix.
+    A `Sparse` can replace a dense operator (r, n). Products with arrays are arrays; other numpy functions use the dense matrix.
 
     >>> import numpy as np
     >>> rows = Sparse(np.array([2]), np.array([[3.0]]), 4)

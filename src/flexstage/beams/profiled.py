@@ -23,8 +23,8 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
     - circular notch: in bending +1 to +2 %, in tension 0 to -13 %;
     - fillets: in bending +3 to +7 %, in tension -2 to -10 %.
 
-    Parabolas, hyperbolas and the tips of a V use their throat radius too. The factor of a deep notch depends only on thickness and radius
-    at the throat (Neuber, Kerbspannungslehre, 1958).
+    For parabolas, hyperbolas and the tip of a V, R is also the radius at the throat. The factor of a deep notch depends only on thickness
+    and radius at the throat (Neuber, Kerbspannungslehre, 1958).
 
     Returns `None` for power profiles, whose curvature at the throat is zero or infinite, and for free-form tables, for which there is no
     reference.

@@ -38,7 +38,7 @@ _RANK = 1e-9
 class FinitePose(CheckedFields):
     """Pose after finite motion: `displacement` (..., 3) [m] of the reference point, `rotation_vector` (..., 3) [rad], in stage axes.
 
-    Displacement and rotation vector are relative to the nominal position. For small motions, they are the components of a twist.
+    Displacement and rotation vector are relative to the nominal position. For small motions, these vectors are the components of a twist.
     """
 
     displacement: Array

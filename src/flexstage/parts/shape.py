@@ -97,7 +97,7 @@ class Elastic(Description):
 
     @property
     def mirrored(self) -> Elastic | None:
-        """Mirror image in the x-z plane. If it is `None`, instances with this part cannot be mirrored."""
+        """Mirror image in the x-z plane. If the mirror image is `None`, instances with this part cannot be mirrored."""
         return None
 
     @property

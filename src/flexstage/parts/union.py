@@ -101,7 +101,7 @@ class _Prism:
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """Yield densities and moments that correct the sum over a body's solids for their common volumes (most are negative).
 
-    A subtracted solid removes its intersection with other solids of its material: P minus H is the union of P and H, minus H. Raises
+    A subtracted solid removes its intersection with other solids of the same material: P minus H is the union of P and H, minus H. Raises
     `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not prisms along one axis.
 
     >>> from flexstage.parts.body import Block

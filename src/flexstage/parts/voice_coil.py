@@ -186,8 +186,8 @@ class VoiceCoil(Coil):
 
     `mass` is the coil's mass, on the body selected by `coil`; `magnet_mass` is the magnet's mass, on the other body. Both masses are point
     masses at the link's centre. `stiffness` is the magnets' stiffness along x (negative: unstable about the middle). `damping` is the
-    coil's damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range
-    of motion along x with a constant `force_constant`, half of it on each side of the middle.
+    coil's damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the range of
+    motion along x with a constant `force_constant`, half of the range on each side of the middle.
 
     `temperature_rise` is the largest permitted temperature difference between coil and surroundings; `thermal_resistance` is the thermal
     resistance between them. `duty` is the duty cycle of the current in short use. The input is the static current, which is V/R for a

@@ -42,8 +42,8 @@ class Picture:
 class Viewer:
     """An animated stage, starting with a `motion` ("mode 1").
 
-    `key` names the stage's data in the page; `ghost` names the data of another stage drawn behind it. `instead` replaces the animation in
-    print, and without scripts or WebGL.
+    `key` names the stage's data in the page; `ghost` names the data of another stage that is drawn behind this stage. `instead` replaces
+    the animation in print, and without scripts or WebGL.
     """
 
     key: str
@@ -129,7 +129,7 @@ class Head:
 
 
 def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
-    """Make a section from the blocks that are not `None`. Returns `None` if no block is left.
+    """Make a section from the blocks that are not `None`. Returns `None` if all blocks are `None`.
 
     >>> section("Empty", [None]) is None
     True
@@ -139,7 +139,7 @@ def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
 
 
 def fold(title: str, *blocks: Block | None) -> Folded | None:
-    """Make a collapsed part from the blocks that are not `None`; a reader can expand it. Returns `None` if no block is left.
+    """Make a collapsed part from the blocks that are not `None`; a reader can expand it. Returns `None` if all are `None`.
 
     >>> fold("Empty", None) is None
     True

@@ -28,7 +28,7 @@ _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone
 
 @check_arguments
 def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
-    """Convert a result to the bytes of an XLSX file, with a sheet for each part: heads, SI units below them, then names and numbers.
+    """Convert a result to the bytes of an XLSX file, with a sheet for each part: heads, SI units below heads, then names and numbers.
 
     Numbers have 16 digits. Unknown values are empty cells; infinity and numbers too large for a cell (1e308) are texts. The last sheet
     lists the source: the version of flexstage and the entries of `about`. Equal results give equal bytes. Raises `DesignError` for tables

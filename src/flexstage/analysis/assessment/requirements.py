@@ -173,7 +173,7 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
 
 
 def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
-    """Read the name of a measure: a key as in `[requirements]`; for some keys, `at` and a named point follow. Errors name `where`.
+    """Read the name of a measure: a key as in `[requirements]`; some keys have `at` and a named point. Errors name the place `where`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")

@@ -63,7 +63,7 @@ class Sensitivities(Result):
 
     @property
     def frequency_slopes(self) -> Annotated[Matrix, VIEW]:
-        """Change of each frequency per unit of each parameter; for a cluster of modes, the change of its mean frequency."""
+        """Change of each frequency per unit of each parameter; for a cluster of modes, the change of the cluster's mean frequency."""
         return self._slopes(self.frequency, self._modes, "Hz")
 
     @property
@@ -102,9 +102,9 @@ def sensitivities(
 ) -> Sensitivities:
     """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to `parameters` (default: all numbers).
 
-    Modes with a relative frequency gap below `cluster` count as repeated; only the derivative of their mean is smooth. All modes of a
-    cluster are listed. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises `DesignError`
-    for unknown addresses, and for addresses that are not a single number in the description.
+    Modes with a relative frequency gap below `cluster` count as repeated; only the derivative of their mean frequency is smooth. All modes
+    of a cluster are listed. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises
+    `DesignError` for unknown addresses, and for addresses that are not a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)

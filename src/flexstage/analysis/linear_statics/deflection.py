@@ -21,7 +21,7 @@ class Deflection(Result):
     """Twist (..., 6, causes) of the platform's reference point or a named point, due to own weight, each payload and each specified force.
 
     In closed loop, the gauges measure the deflection and the strokes compensate for it. In open loop, the deflection is the load term of
-    Eq. 11 (Shin & Moon).
+    equation 11 (Shin & Moon).
     """
 
     point: str
@@ -39,7 +39,7 @@ def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFOR
     """Compute the deflection of a platform point under gravity and specified forces, q = K^-1 f, with strokes fixed.
 
     For the model of the loaded stage (see `load_effect`), the deflection is the motion from the unloaded to the loaded equilibrium, by the
-    theory of large displacements. All loads are then one cause.
+    theory of large displacements. In this model, all loads together are one cause.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -102,7 +102,7 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     inner=False)`, the expansion is that of the nominal stage, and the stiffness that of the loaded stage.
 
     Raises `DesignError` for missing expansion coefficients, an unknown ground material, or locked degrees of freedom that block expansion.
-    Models whose stiffness is not assembled from links are also errors: mapped models, and linearised models with `inner` coordinates.
+    Models whose stiffness is not assembled from links are refused: mapped models, and linearised models with `inner` coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -96,10 +96,10 @@ class LostMotion(Result):
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compute lost motion from an elastic model and the ideal kinematics of the same stage.
 
-    Lost motion is Lambda = I - R_a V^+ T. Its contributions by link are exact for any graph of links. By virtual work and reciprocity,
-    Lambda_ij = sum_e f_e^(i) . gamma_e^(j). Here f_e^(i) is the force of link e under the platform wrench (R_a V^+)^T e_i with zero
-    strokes. The deformation gamma_e^(j) of link e belongs to the ideal motion of stroke j. For one unloaded lever, the diagonal is eps / (1
-    + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Motions are small.
+    Lost motion is Lambda = I - R_a V^+ T. The budget of contributions by link is exact for any graph of links. By virtual work and
+    reciprocity, Lambda_ij = sum_e f_e^(i) . gamma_e^(j). Here f_e^(i) is the force of link e under the platform wrench (R_a V^+)^T e_i with
+    zero strokes. The vector gamma_e^(j) is the deformation of link e in the ideal motion of stroke j. For one unloaded lever, the diagonal
+    of Lambda is eps / (1 + eps) with eps = K_theta2 / (r_1^2 K_1) (equation 11 of Shin & Moon). Motions are small.
 
     For a model linearised about a displaced state, the ideal motion is still that of the nominal position. The budget then requires the
     model `linearise(state, inner=False)`, and has the additional contribution `geometric` of the geometric stiffness. Raises `DesignError`

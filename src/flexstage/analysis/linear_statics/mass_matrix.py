@@ -29,9 +29,9 @@ class MassMatrix(Result):
     """Mass matrix at a point in the stage's axes: a velocity twist v has the kinetic energy v^T M v / 2.
 
     `rigid` (..., 6, 6) is the mass matrix of the point's `body` alone, with its payloads. `reduced` (..., 6, 6) includes the whole stage:
-    all other masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA J. 3, 380, 1965). `reduced` and the
-    stiffness at the same point give natural frequencies that are never below the frequencies of the whole model. They are close to these
-    frequencies if there are no local modes nearby. `reasons` explain unknown masses.
+    all other masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA Journal 3, 380, 1965). `reduced` and the
+    stiffness at the same point give natural frequencies that are never below the frequencies of the whole model. Without local modes
+    nearby, both sets of frequencies are close to each other. `reasons` explain unknown masses.
     """
 
     point: str

@@ -47,7 +47,7 @@ class Omitted:
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static responses with restricted and with full parts, for the `channel` = (output, input).
 
-    `simple` locks or frees degrees of freedom, by part or by link (`vertical/pivot`). Each of these degrees of freedom regains its
+    `simple` locks or frees degrees of freedom, by part or by link (`vertical/pivot`). Each locked or freed degree of freedom regains its
     elasticity individually. Batches are not supported.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -72,7 +72,7 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
 
 
 def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
-    """Return the restrictions of Eq. 3 of Shin & Moon for a lever unit, by link: only axial springs and the rotation of the ground pivot.
+    """Return the restrictions of a lever unit, by link, in equation 3 of Shin & Moon: axial springs and a rotating ground pivot.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [freedom.value for freedom in lever_theory(double_triangle(), "vertical")["vertical/pivot"][0]]

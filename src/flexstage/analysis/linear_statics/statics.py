@@ -92,9 +92,9 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
 
     The compliance is C = C_read K^-1 C_load^T, with strokes fixed and small displacements. If the platform has fewer than six degrees of
-    freedom in the model (the mapped model of a guide), the stiffness is infinite along the locked ones. All entries of the stiffness, and
-    tensors derived from it, are then NaN; in a batch, the first design decides. Along an axis without stiffness, the compliance is
-    infinite.
+    freedom in the model (the mapped model of a guide), the stiffness is infinite along the locked degrees of freedom. All entries of the
+    stiffness, and tensors derived from it, are then NaN; in a batch, the first design decides. Along an axis without stiffness, the
+    compliance is infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -148,8 +148,8 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
     """Compute stiffness by degree of freedom for fewer than six ideal motions: along ideal motions, and along constraints.
 
     `found` is the statics at a point of the platform. The stiffness is 1 / C_ii with the other degrees of freedom free, and K_ii with the
-    others fixed; NaN for a locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and load points
-    differ.
+    other degrees of freedom fixed; NaN for a locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and
+    load points differ.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

@@ -32,9 +32,9 @@ _FORCES = ("platform.fx", "platform.fy", "platform.fz")
 class UnitResult(UnitOutput):
     """Properties of one isolated unit by the lumped model.
 
-    `loss` and `load_compliance` [m/N] are for an output guided along its direction. `series` is the unit's stiffness in actuator
+    `loss` and `load_compliance` [m/N] are computed with the output guided along its direction. `series` is the unit's stiffness in actuator
     coordinates for the mapped model (`None` if this model does not support the unit). For a lever unit, `lever` has the springs of lever
-    theory; `omitted` has the error of the gain by Eq. 3 for each degree of freedom.
+    theory; `omitted` has the error of the gain by equation 3 for each degree of freedom.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -46,8 +46,8 @@ def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
 def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: int | None = None) -> str:
     """Return an SI value as a string in `unit` (default: the quantity's display unit).
 
-    Without `digits`, it is the shortest string that `parse` converts back to the same bits. For an array, the string contains the range and
-    size.
+    Without `digits`, the result is the shortest string that `parse` converts back to the same bits. For an array, the string contains the
+    range and size.
 
     >>> from flexstage.base.units.quantity import LENGTH, STIFFNESS
     >>> show(0.00154, LENGTH), show(1.03e7, STIFFNESS, "N/mm"), show(2.0 / 3.0, LENGTH, digits=4)

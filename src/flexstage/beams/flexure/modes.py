@@ -90,7 +90,7 @@ class Across:
 
 @functools.cache
 def across(degrees: tuple[int, ...]) -> Across:
-    """Compute the integrals for shapes of these polynomial `degrees`.
+    """Compute the integrals across the width for shapes of these polynomial `degrees`.
 
     >>> across((2,)).curved.round(12).tolist()
     [[1.0]]

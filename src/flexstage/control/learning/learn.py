@@ -31,7 +31,7 @@ BEYOND = Heading("beyond the band", digits=3)
 
 @dataclass(frozen=True, eq=False)
 class RobustBand:
-    """Robust learning `band`. `contraction` is the largest ||Q (I - gain P P^^-1)|| over the frequencies in it (see `robust_band`)."""
+    """Robust learning `band`. `contraction` is the largest ||Q (I - gain P P^^-1)|| over the band's frequencies (see `robust_band`)."""
 
     band: Band
     contraction: float
@@ -90,9 +90,9 @@ class LearningResult:
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
     """Find the frequency band in which ||I - gain P P^^-1|| is at most 0.8, for relative mode shifts up to `spread`.
 
-    P are the loop's responses with shifted modes; P^ are the model's responses. Rotations in them are scaled to lengths. If the norm is
-    below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114). The band also
-    ends where ||P^^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
+    P are the loop's responses with shifted modes; P^ are the model's responses. In both, rotations are scaled to lengths. If the norm is
+    below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson, International Journal of Control 75 (2002)
+    1114). The band also ends where ||P^^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
     """
     plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)

@@ -29,11 +29,12 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 class Repeater:
     """Repetitive controller d = z^-P (W d + L e) for the error e. `keep` (2m+1,) are the taps of W, `teach` (2m+1, f, f) those of L.
 
-    Both filters are noncausal by m samples. Their taps include the fractional delay if the `period` P [samples] is not a whole number. W is
-    the low-pass filter of the `band`. `contraction` is the largest ||W - G L|| over all frequencies, with rotations scaled to lengths; G
-    denotes the loop's responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano
-    et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest
-    amplification between the harmonics: the maximum of ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1.
+    Both filters are noncausal by m samples. The taps of both filters include the fractional delay if the `period` P [samples] is not a
+    whole number. W is the low-pass filter of the `band`. `contraction` is the largest ||W - G L|| over all frequencies, with rotations
+    scaled to lengths; G denotes the loop's responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors
+    decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, Journal of Dynamic Systems, Measurement, and Control 111
+    (1989) 353). `amplifies` is the largest amplification between the harmonics: the maximum of ||(I + W z) (I + (W - G L) z)^-1|| over |z|
+    = 1.
     """
 
     period: float
@@ -59,8 +60,8 @@ def repeater(closed: Loop, control: System, period: float, gain: float, spread: 
     """Design the filters for a `period` [s] in the widest band in which errors decrease, for relative mode shifts up to `spread`.
 
     `gain` multiplies the inverse model of the loop. Finite filters also act outside their band; therefore the band is narrower than for
-    iterative learning. Raises the `DesignError` of `robust_band`, or one for a period so short that no usable band contains its first
-    harmonic.
+    iterative learning. Raises the `DesignError` of `robust_band`, or a `DesignError` for a period so short that no usable band contains the
+    first harmonic.
     """
     step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))

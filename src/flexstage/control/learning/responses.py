@@ -22,8 +22,8 @@ def readings(plant: Plant, control: System, frequencies: Array, offset: float = 
     """Compute responses (f, k, k) from the reference to the measured pose, with all mode frequencies raised by a relative `offset`.
 
     y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r, for the sampled plant P and the controller's responses K from error, pose and reference. The
-    mode frequencies are raised by scaling the time of the plant; its lags therefore become shorter. Hold and delay of a sampled plant are
-    unchanged.
+    mode frequencies are raised by scaling the time of the plant; the plant's lags therefore become shorter. Hold and delay of a sampled
+    plant are unchanged.
     """
     P = pose_plant(plant, offset).sweep(frequencies)
     back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
@@ -75,8 +75,8 @@ def through(responses: Array, path: Array) -> Array:
     """Filter a path (n, k) by frequency responses (n/2+1, k, k), see `frequencies_of`. The path starts at zero and ends at rest.
 
     The differences between successive points are transformed, because they end at zero. The response of an inverse model may have poles
-    outside the unit circle. It is then the sum of a stable component forward in time and an antistable component backward in time (Devasia,
-    Chen & Paden, IEEE Trans. Autom. Control 41 (1996) 930). Therefore the filtered path starts before the path.
+    outside the unit circle. This response is then the sum of a stable component forward in time and an antistable component backward in
+    time (Devasia, Chen & Paden, IEEE Transactions on Automatic Control 41 (1996) 930). Therefore the filtered path starts before the path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

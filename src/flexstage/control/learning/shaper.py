@@ -18,7 +18,7 @@ class Shaper:
     amplitudes: Array
 
     def shape(self, poses: Array, step: float) -> Array:
-        """Shape a path (n, f) that is at rest before its start, with samples every `step` [s]. Impulses between two samples are split.
+        """Shape a path (n, f) that is at rest before its start, with samples every `step` [s]. Impulses between samples are split.
 
         >>> half = Shaper(np.array([0.0, 0.2]), np.array([0.5, 0.5]))
         >>> half.shape(np.ones((4, 1)), 0.1).ravel().tolist()
@@ -37,8 +37,8 @@ class Shaper:
 def zv(frequency: float, damping: float) -> Shaper:
     """Construct a zero-vibration (ZV) shaper for a mode of undamped `frequency` [Hz] and `damping` ratio zeta.
 
-    The impulses 1/(1+K) and K/(1+K) are half a damped period apart, with K = exp(-zeta pi / (1 - zeta^2)^(1/2)) (Singer & Seering, J. Dyn.
-    Syst. Meas. Control 112 (1990) 76). Raises `DesignError` for invalid numbers.
+    The impulses 1/(1+K) and K/(1+K) are half a damped period apart, with K = exp(-zeta pi / (1 - zeta^2)^(1/2)) (Singer & Seering, Journal
+    of Dynamic Systems, Measurement, and Control 112 (1990) 76). Raises `DesignError` for invalid numbers.
 
     >>> zv(50.0, 0.0).times.tolist(), zv(50.0, 0.0).amplitudes.tolist()
     ([0.0, 0.01], [0.5, 0.5])

@@ -84,7 +84,7 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
 
 
 def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
-    """Compute the disk margin of all loops at once. Factors vary at the poses, at the commands, or (`cut` None) at both.
+    """Compute the disk margin of all loops at once. The factors are applied at the poses, at the commands, or at both if `cut` is None.
 
     The margin is alpha = 1/sup mu(S + (skew - 1)/2), where mu is the structured singular value for a complex factor in every loop. An upper
     bound of mu is the minimum of sigma(D M D^-1) over diagonal D, a lower bound the maximum of rho(U M) over phases U. The upper bound is

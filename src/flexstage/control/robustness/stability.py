@@ -29,7 +29,8 @@ class Pole:
 
     `frequency` [Hz], damping `ratio` -growth / |p| and growth rate `growth` [1/s] (negative: decay) are those of the pole pair. `source` is
     the mode or device with the largest participation in the pole (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`, `delayed
-    strokes`); `share` is this participation. `coordinate` has the largest error, after rotations are multiplied by the stage's length.
+    strokes`); `share` is this participation. `coordinate` is the coordinate with the largest error; errors in rotation are multiplied by
+    the stage's length.
     """
 
     frequency: Annotated[float, FREQUENCY]

@@ -32,11 +32,11 @@ def _grade_disk(alpha: float) -> Mark:
 
 @dataclass(frozen=True)
 class ChannelMargins:
-    """Stability margins of one loop, with the others closed.
+    """Stability margins of one loop, with the other loops closed.
 
-    The loop is stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit). It is stable for phases up to
-    `phase` [rad] of either sign, and for delays up to `delay` [s] (factors e^{-j omega tau}). `disk` is alpha of the balanced disk margin:
-    gain and phase may change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
+    The loop is stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit). The loop is also stable for
+    phases up to `phase` [rad] of either sign, and for delays up to `delay` [s] (factors e^{-j omega tau}). `disk` is alpha of the balanced
+    disk margin: gain and phase may change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -70,8 +70,8 @@ class Clock:
 def read_clock(times: Array, where: str) -> Clock:
     """Determine the sampling clock from times (n,) in s; raises `DesignError` for too few, non-finite, repeated or uneven times.
 
-    A time step is a gap if it differs from the median step by more than half the median step. The rate follows from the other steps,
-    rounded within the precision of the times.
+    A time step is a gap if it differs from the median step by more than half the median step. The rate is computed from the steps that are
+    not gaps, and rounded within the precision of the times.
 
     >>> read_clock(np.array([0.0, 0.1, 0.2, 0.7, 0.8]), "a.csv").stretches
     ((0, 3), (3, 5))
@@ -127,7 +127,7 @@ def clocked_record(channels: Iterable[Channel], samples: Samples, clock: Clock, 
 
 
 def longest_stretch(record: Record, clock: Clock) -> Record:
-    """Return the longest interval without gaps of a record, with its start time; a record without gaps is unchanged."""
+    """Return the longest interval of a record without gaps, with the interval's start time; a record without gaps is unchanged."""
     if len(clock.stretches) < 2:
         return record
     return replace(record.part(*clock.longest), start=clock.starts[clock.stretches.index(clock.longest)])

@@ -281,7 +281,7 @@ class Responses(InNotebook, CheckedFields):
         )
 
     def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
-        """Return the response of one output to one input over frequency, complex (f,)."""
+        """Return the complex response (f,) of one output to one input at all frequencies."""
         row = [channel.name for channel in self.outputs].index(output)
         column = [channel.name for channel in self.inputs].index(input)
         return self.values[:, row, column]
@@ -315,7 +315,7 @@ def in_memory(channels: Iterable[Channel], rate: float, values: Annotated[Array,
 
 
 def rising_problem(frequencies: Array) -> str | None:
-    """Describe why frequencies do not increase: fewer than two, a duplicate, or a decrease; None if they increase.
+    """Describe why frequencies do not increase: fewer than two values, a duplicate, or a decrease; None if frequencies increase.
 
     >>> rising_problem(np.array([1.0, 2.0, 2.0, 3.0]))
     'its frequencies do not increase: 2 Hz occurs twice, as values 2 and 3'

@@ -53,8 +53,8 @@ class Spectra:
     """One-sided spectral densities at `frequencies` (f,) in Hz: `xx` (f, m, m), `yx` (f, p, m) and `yy` (f, p, p).
 
     `yx` is E[Y X^H]: entry (i, j) is output i times the conjugate of input j. `xx` is E[X X^H], and `yy` is E[Y Y^H]. The paper's G_ij =
-    E[X_i* Y_j] (Eq. 29) is yx[j, i]. The unit of an entry is the product of the units of its two channels, per Hz. `averages` is the number
-    of segments; `independent` is the equivalent number of segments without overlap.
+    E[X_i* Y_j] (equation 29) is yx[j, i]. The unit of an entry is the product of the units of its two channels, per Hz. `averages` is the
+    number of segments; `independent` is the equivalent number of segments without overlap.
     """
 
     frequencies: Array
@@ -89,9 +89,9 @@ class Spectra:
 def spectra(record: Record, segments: Segments) -> Spectra:
     """Estimate the spectra of a record's inputs and outputs by Welch's method: averages over windowed, overlapping segments.
 
-    Reference: Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. The memory does not depend on the record's length. The mean of each
-    segment is subtracted. The window smears the estimate over about two lines: choose segments so long that several lines are within the
-    sharpest resonance. Raises `DesignError` for a record without outputs, or shorter than a segment.
+    Reference: Welch, IEEE Transactions on Audio and Electroacoustics 15 (1967) 70. The memory does not depend on the record's length. The
+    mean of each segment is subtracted. The window smears the estimate over about two lines: choose segments so long that several lines are
+    within the sharpest resonance. Raises `DesignError` for a record without outputs, or shorter than a segment.
 
     >>> from flexstage.experiment.records.record import Role, in_memory
     >>> noise = np.random.default_rng(0).standard_normal((64_000, 1))
@@ -136,7 +136,7 @@ def example_spectra() -> Spectra:
 
 
 def independent_averages(averages: int, window: Array, hop: int) -> float:
-    """Compute the number of non-overlapping segments equivalent to `averages` overlapping ones (Welch 1967, Eq. 11).
+    """Compute the number of non-overlapping segments equivalent to `averages` overlapping ones (Welch 1967, equation 11).
 
     Successive segments, with the same `window`, start `hop` samples apart.
 
@@ -186,7 +186,7 @@ def _accumulate(record: Record, size: int, segments: Segments) -> tuple[Array, i
 
 
 def pool(parts: Sequence[Spectra]) -> Spectra:
-    """Combine spectra of several records, weighted by their averages; an input missing in a record counts as zero there.
+    """Combine spectra of several records, weighted by their numbers of averages; an input missing in a record counts as zero there.
 
     Inputs are in order of their first occurrence. All records must have the same frequency lines and the same outputs.
 

@@ -41,8 +41,8 @@ class Cells:
     """Sums over frequency cells from `low` to `high` (c,) in Hz, with the block number (c,) and the `count` of lines (c,) of each cell.
 
     Z = P_a(x) U_i is the product of Legendre polynomials, a = 0..7, and the block's drive. The sums are `own` (c, 8, n, 8, n) = Z^H Z,
-    `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. Of the `width` columns of all blocks, the drive of one block has the
-    columns `columns[block]`.
+    `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. The `width` columns include the drives of all blocks; `columns[block]` are
+    the columns of one block.
     """
 
     low: Array

@@ -20,7 +20,7 @@ SMEARING = (Window.BOXCAR, Window.HANN)
 class WindowLeakage:
     """Effect of the `window` on estimated responses, for segments of length `seconds`.
 
-    With white noise as input, the impulse response of the estimate is the true one times the window's autocorrelation r(t/T). A fit
+    With white noise as input, the estimated impulse response is the true impulse response times the window's autocorrelation r(t/T). A fit
     accounts for this effect with functions 1/(j f - p) smeared in the same way.
     """
 

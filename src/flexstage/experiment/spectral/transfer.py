@@ -15,7 +15,7 @@ _DEPENDENT, _NOTHING = 1e-9, 1e-15
 
 @check_arguments
 def h1(spectra: Spectra) -> Responses:
-    """Estimate H1 = G_yx G_xx^-1, the least-squares estimate for noise at the outputs (Bendat & Piersol, ch. 7).
+    """Estimate H1 = G_yx G_xx^-1, the least-squares estimate for noise at the outputs (Bendat & Piersol, chapter 7).
 
     H_ij is output i over input j. Inputs may be correlated. The result contains the ordinary coherence of every entry. Raises
     `DesignError` for linearly dependent inputs, because no estimate can separate their effects.
@@ -49,7 +49,7 @@ def h2(spectra: Spectra) -> Responses:
 
 
 def spectral_ratio(spectra: Spectra) -> Responses:
-    """Compute the spectral ratio T_ij = G_ij / G_ii of the paper (Shin & Moon, Eq. 29), arranged as output over input.
+    """Compute the spectral ratio T_ij = G_ij / G_ii of the paper (Shin & Moon, equation 29), arranged as output over input.
 
     The ratio equals H1 for a single input or uncorrelated inputs. For correlated inputs, the ratio is not a transfer function.
 
@@ -72,7 +72,7 @@ def ordinary_coherence(spectra: Spectra) -> Array:
 
 
 def multiple_coherence(spectra: Spectra) -> Array:
-    """Compute the multiple coherence (f, p), the fraction of every output's power that all inputs explain (Bendat & Piersol, ch. 7).
+    """Compute the multiple coherence (f, p), the fraction of every output's power that all inputs explain (Bendat & Piersol, chapter 7).
 
     The coherence is H1 G_xx H1^H / G_yy. If an output is only noise, its estimated coherence is not zero, but about the number of inputs
     divided by the number of independent averages.

@@ -54,8 +54,8 @@ class Calibration(InNotebook):
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
     """Compute the 6x6 compliance matrix of every distinct hinge in a design file's text, and insert the results; comments are kept.
 
-    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. A matrix
-    by FEA whose error is unknown or above 10 % is also an error.
+    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. Also
+    raises `DesignError` if the error of a matrix by FEA is unknown or above 10 %.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))

@@ -70,7 +70,7 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance can be separated from the compliance of the stubs, which is at most 90 % of the sum.
+        """Whether each direct compliance is separable from that of the stubs: at least 10 % of the compliance including the stubs.
 
         The solid contains stubs (pieces of the blocks) next to the hinge. The compliance of the stubs, as beams with restrained warping
         (Vlasov), is subtracted. In torsion, a wide notch is stiffer than its stubs; the result is then a small difference of two large

@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """Return a function that stores the results of `reduce`. For `raised` components, it combines stored results of two orders.
+    """Return a function that stores the results of `reduce`. For `raised` components, the function combines stored results of two orders.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()

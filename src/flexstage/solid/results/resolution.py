@@ -40,7 +40,7 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; figures missing in `errors` have none.
+    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; figures not in `errors` have none.
 
     The estimated error is the change from the previous order; at order two, it is a quarter of this change. At order two, errors of the
     `unestimated` figures, which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further,
@@ -69,8 +69,8 @@ def converge(
 ) -> Converged[_Result]:
     """Raise the element order (3, 4) until the estimated errors are within the accuracy, or compute at the order in `asked`.
 
-    Errors are estimated by a computation with one order less. `sizes` returns the number of unknowns of each component; with it, components
-    that cause a large fraction of the change get a higher order first. `measure` computes only the figures of a result.
+    Errors are estimated by a computation with one order less. `sizes` returns the number of unknowns of each component; if it is specified,
+    components that cause a large fraction of the change get a higher order first. `measure` computes only the figures of a result.
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)

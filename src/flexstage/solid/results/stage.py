@@ -107,7 +107,7 @@ def _figures(found: Statics, modes: Modes) -> dict[str, float]:
 
 
 def stage_figures(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, float]:
-    """Compute only the `figures` of `solid_stage`, without stress. Raises the same `DesignError`."""
+    """Compute only the `figures` of a `SolidStage`, without stress. Raises the same `DesignError` as `solid_stage`."""
     model = read_solid(mechanism, reduction, reduce).model
     return _figures(statics(model), platform_modes(mechanism, model))
 

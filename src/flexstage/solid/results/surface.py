@@ -36,7 +36,7 @@ def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
 
 
 def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]) -> tuple[Surface, ...]:
-    """Return the surfaces of a stage, displaced by the magnified static `motion` (N,). Their values are von Mises stress [Pa].
+    """Return the surfaces of a stage, displaced by the magnified static `motion` (N,); values are von Mises stress [Pa].
 
     `strokes` maps each input to its stroke [m] in this motion.
     """

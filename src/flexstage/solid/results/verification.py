@@ -68,9 +68,9 @@ class Row:
     """One figure by theory and by FEA, in SI units.
 
     `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the paper's model with axial springs,
-    if it applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is the estimated
-    relative error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the MAC of paired modes.
-    Unknown values are `None`, and `reason` explains them. If `calibration` is empty, a verdict requires `theory` and `fea_error`.
+    if this model applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is the
+    estimated relative error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the MAC of paired
+    modes. Unknown values are `None`, and `reason` explains them. If `calibration` is empty, a verdict requires `theory` and `fea_error`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -238,8 +238,8 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
 def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Estimate:
     """Compute by finite elements the quantities that a stage's requirements limit, with estimated errors. Unknown values are left out.
 
-    Strokes, stresses and frequencies are computed from the reduced solid model in the same way as from the lumped model. The stress
-    concentration at fillets is included by the stress concentration factors of hinges.
+    Strokes, stresses and frequencies are computed from the reduced solid model in the same way as from the lumped model. Stress at fillets
+    includes the stress concentration factors of hinges.
     """
     again = remember(reduce)
     found = converge(

@@ -45,7 +45,7 @@ class Cad:
 
 
 def cad(component: Component) -> Cad:
-    """Draw a component: pieces of one medium are fused, those of different media glued over their common faces.
+    """Draw a component: pieces of one medium are fused; pieces of different media are glued over common faces.
 
     Faces are named after the joints at interfaces and at the ground. Raises `DesignError` for joints without a matching flat face and for
     pieces that do not form one solid.

@@ -232,7 +232,7 @@ def prism(form: Shaped) -> occ.Solid:
 
 @dataclass(frozen=True)
 class Shape:
-    """Functions that draw a kind of part as a CAD solid [mm]. `draw` draws it at the origin, `specimen` with stubs at its ends.
+    """Functions that draw a kind of part as a CAD solid [mm]. `draw` draws the part at the origin, `specimen` with stubs at its ends.
 
     By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts need `specimen.cut`, which blunts arcs at
     rigid faces: complete arcs would meet these faces at angles that cannot be meshed.

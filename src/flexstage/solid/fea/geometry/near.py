@@ -24,7 +24,7 @@ class Question:
 
 
 def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
-    """Evaluate each distinct question and report its errors at the first location, with the names of the others.
+    """Evaluate each distinct question. Report its errors at the first location, with the names of other locations.
 
     >>> asked = [Question("a", name, lambda: [("it is loose", "Hold it")]) for name in ("B1/front", "B2/front")]
     >>> [str(finding) for finding in findings_of(asked)]
@@ -40,7 +40,7 @@ def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
 
 
 def relative_frame(frame: Frame, base: Frame) -> Frame:
-    """Return a frame relative to another one, rounded so that instances have equal frames.
+    """Return a frame relative to a `base` frame, rounded so that all instances of a unit have equal frames.
 
     >>> relative_frame(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
     [0.0, 1.0, 1.0]

@@ -12,7 +12,7 @@ from flexstage.solid.fea.geometry.piece import MILLIMETRES
 
 
 def reinforced_solid(part: ReinforcedLeaf) -> occ.Solid:
-    """Draw a reinforced leaf: its outline in the xy plane, extruded over its width [mm].
+    """Draw a reinforced leaf [mm]: an outline in the xy plane is extruded over the leaf's width.
 
     >>> leaf = ReinforcedLeaf("steel", 0.04, 0.5e-3, 0.02, flexure_length=0.01, reinforced_thickness=3e-3)
     >>> round(reinforced_solid(leaf).mass, 6)

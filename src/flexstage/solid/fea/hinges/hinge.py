@@ -131,12 +131,12 @@ def hinge_compliance(
 ) -> HingeSolid:
     """Compute the 6x6 compliance matrix of a hinge by finite elements, to the required accuracy (default 1 %).
 
-    With one outer face fixed and the other moved rigidly by e_i about the centre, the displacements u_i have the energies K_ij = u_i . K_FE
+    With one outer face fixed and the other moved rigidly by e_i about the centre, the displacements u_i have the energies K_ij = u_i^T K_FE
     u_j. The compliance of the stubs is subtracted: C = K^-1 - sum over stubs of X C_stub X^T. First the order is raised, then the mesh is
     refined, until the error estimated from the last changes (`estimate.remaining`) is within `accuracy.error`.
 
-    `roots` selects the ends that are on blocks (default: both ends of a profile that rises to its blocks, else none). `stub` [m] is the
-    length of a stub. The default is the hinge's full height; if the block is wider than the hinge, it is five times the hinge's `grain`.
+    `roots` selects the ends that are on blocks (default: both ends of a profile that `rises`, else no end). `stub` [m] is the length of a
+    stub. The default is the hinge's full height; if the block is wider than the hinge, it is five times the hinge's `grain`.
 
     The stub's length is a convention; it changes C_x by 1 to 3 %, C_y by about 10 %, and C_rx by a large factor if the hinge is several
     times wider than high. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made. The functions in `told`

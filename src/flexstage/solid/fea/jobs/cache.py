@@ -59,7 +59,7 @@ def warn(finding: Finding) -> None:
 
 
 def folder_of(cache: Cache) -> Path:
-    """Return the folder of a cache; it need not exist.
+    """Return the folder of a cache; this folder need not exist.
 
     >>> folder_of(Cache(Path("/tmp/superelements"))).name
     'superelements'
@@ -68,7 +68,7 @@ def folder_of(cache: Cache) -> Path:
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
-    """Digest the inputs of a superelement: the content of the component and the options of its reduction, without program versions.
+    """Return a digest of a superelement's inputs: the content of the component and the options of reduction, without program versions.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -104,7 +104,7 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, noti
 
 
 def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
-    """Return whether a file exists for a key; its validity is checked only when it is read.
+    """Return whether a file exists for a key. The content of the file is checked only when it is read.
 
     >>> holds(Cache(Path("/nowhere")), "key")
     False

@@ -15,7 +15,7 @@ _INSTALL = f"Install {SOLVER_VERSION} with: pip install 'flexstage[solid]' (Pyth
 
 
 def solver_findings() -> tuple[Finding, ...]:
-    """Return problems that prevent NGSolve and netgen from working. If the installed versions are correct, both are imported as a test.
+    """Return problems that prevent NGSolve and netgen from working. If the installed versions are correct, both packages are imported.
 
     >>> solver_findings()
     ()

@@ -53,7 +53,7 @@ class Counts:
         return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
-        """Estimate the counts for sizes larger by a `factor`. Counts of graded meshes are divided by its square, not its cube.
+        """Estimate the counts for sizes larger by a `factor`: counts of graded meshes decrease with the square, not the cube.
 
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Return the counts of a mesh of uniform `order` with equal DOFs, if the fraction `share` of this mesh has one order more.
+        """Return counts that give, at a uniform `order`, the DOFs of this mesh with one order more in the fraction `share` of it.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0

@@ -39,8 +39,8 @@ _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 class Ways:
     """Options of the jobs: the `cache` (`None`: no cache), the receivers of `progress` and of warnings (`notice`), and the `limits`.
 
-    With a `pool`, later calls use the same processes and results. `note` receives lines of text: the jobs and their CPU time before they
-    begin, every result, and after an interruption the number of stored results.
+    With a `pool`, later calls use the same processes and results. `note` receives lines of text: first the jobs and their CPU time, then
+    every result, and after an interruption the number of stored results.
     """
 
     cache: Cache | None = Cache()
@@ -57,7 +57,7 @@ def reduce_parts(
     ways: Ways = Ways(),
     springs: Mapping[str, Array] = _NO_SPRINGS,
 ) -> Parts:
-    """Reduce components. `springs` connect the interfaces of some components; they are given by the component's name.
+    """Reduce components. `springs` maps names of components to springs that connect their interfaces.
 
     Only components missing from the cache need the solver. Each superelement is stored immediately, so that an interrupted computation can
     resume. Raises `DesignError` with all failures.

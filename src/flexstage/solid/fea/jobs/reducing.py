@@ -97,7 +97,7 @@ class ComponentJob(StoredJob):
 
 @dataclass(frozen=True, eq=False)
 class Reduce(ComponentJob):
-    """Job that reduces a component. `springs` (6 m, 6 m) connect its m interfaces, if a whole stage is one component with modes."""
+    """Job that reduces a component. If a whole stage is one component, `springs` (6 m, 6 m) connect its m interfaces."""
 
     reduction: Reduction
     springs: Array | None = None
@@ -126,7 +126,7 @@ class Reduce(ComponentJob):
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
     def seconds(self) -> float:
-        """Return the CPU time of the reduction [s], estimated from its measured work; if this is unknown, the usual time of a small job."""
+        """Return the CPU time of the reduction [s], estimated from the measured work; without one, the usual time of a small job."""
         return super().seconds() if self.measured is None else self.measured.seconds(self.columns)
 
     def summary(self, found: Superelement) -> str:
@@ -138,7 +138,7 @@ class Reduce(ComponentJob):
         return needed(counts, self.reduction.fineness.order, self.columns)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Return an error if the job needs more memory than `limit`. It names an order or fineness that fits, and sizes of thin parts."""
+        """Return an error if the job needs more memory than `limit`: with an order or fineness that fits, and the size of thin parts."""
         found = refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
         forms = ((piece.name, piece.form) for piece in self.component.pieces if is_leaf(piece.form) or is_notch(piece.form))
         wide = {name: form.throat for name, form in forms if isinstance(form, Shaped)}

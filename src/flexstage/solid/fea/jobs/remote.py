@@ -46,7 +46,7 @@ AnyJob = TypeVar("AnyJob", bound=Job)
 
 
 class Pool:
-    """Processes that are kept between groups of jobs, because loading the solver takes longer than a small job; `results` are by key.
+    """Processes kept between groups of jobs, because loading the solver takes longer than a small job; `results` maps keys to results.
 
     The processes end when the context of the pool is left.
 

@@ -13,7 +13,7 @@ from flexstage.spatial.frame import Frame, identity
 def bar() -> Component:
     """Make a square bar along x, 100 x 10 x 10 mm, with E = 100 GPa, nu = 0 and 1000 kg/m^3, fixed at x = 0 and joined at x = 100 mm.
 
-    Its axial stiffness is E A / L = 100 N/um, its mass 10 g.
+    The bar's axial stiffness is E A / L = 100 N/um, and its mass is 10 g.
 
     >>> [piece.name for piece in bar().pieces], bar().interfaces[0].joint.name
     (['bar.block'], 'end')

@@ -44,7 +44,7 @@ def remaining(changes: Iterable[float]) -> float:
     """Estimate the error of the last of several results as max(1, r / (1 - r)) d_n; d_1, d_2, ... are the `changes` between them.
 
     Here r = d_n / d_(n-1), at most 0.8. For slow convergence, the estimate is the sum of a geometric series; for fast convergence, it is
-    the last change, an overestimate. The estimate is not a bound. It is infinite for a single result.
+    the last change, an overestimate. The estimate is not a bound; for a single result, it is infinite.
 
     >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), round(remaining([0.4, 0.4]), 6), remaining([0.4]), remaining([])
     (0.1, 0.9, 1.6, 0.4, inf)

@@ -84,8 +84,9 @@ def mesh_component(
     """Draw and mesh a component; `by_symmetry`: only the positive side of a symmetric component.
 
     Elements near the ends of arcs get straight sides if curving would invert them. If the mesher fails, or an element of a neck is
-    inverted, a few other sizes and gradings are tried. `first` is the number of the first attempt, if earlier attempts crashed. Drawings
-    and meshes are cached; for another order, the mesh is only curved again. Raises `DesignError` if meshing fails in all attempts.
+    inverted, a few other sizes and gradings are tried. `first` is the number of the attempt to start with, after a crash of earlier
+    attempts. Drawings and meshes are cached; for another order, the mesh is only curved again. Raises `DesignError` if meshing fails in all
+    attempts.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -321,7 +322,7 @@ def centroids(mesh: ngsolve.Mesh) -> Array:
 
 
 def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
-    """Return the piece (index) with the nearest bounding box for each point. At equal distance, links precede bodies.
+    """Return for each point the piece (index) with the nearest bounding box. At equal distance, links precede bodies.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()

@@ -163,7 +163,7 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 
 
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """Build the form int stress(u) : strain(v) dV [N/m] over some elements (mask) or all. `assemble=False`: only for `apply_form`.
+    """Build the form int stress(u) : strain(v) dV [N/m] over some elements (mask) or all; if not `assemble`, only for `apply_form`.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -181,7 +181,7 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """The form int rho u . v dV [kg]: a sum of `scalar` matrices (n / 3, n / 3), one block for each of the three uncoupled components."""
+    """The form int rho u . v dV [kg], as a sum of `scalar` matrices (n / 3, n / 3) that apply separately to the three components of u."""
 
     scalar: tuple[Any, ...]
 
@@ -536,7 +536,7 @@ KindSolver = Callable[[Columns], Array]
 
 
 def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
-    """Return a solver for the sum of the forms' matrices and for forces of all kinds. It keeps one factor for each kind.
+    """Return a solver for the sum of the forms' matrices and for forces of all kinds. The solver keeps one factor for each kind.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -237,9 +237,9 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Ite
     """Factorise a sum of matrices, positive definite on the free nodes, once for each set of `held` (fixed) degrees of freedom.
 
     Matrices are `scipy.sparse.csr_array` with both triangles. The DOFs of all nodes along x come first, then those along y, then along z.
-    If a pair of nodes has an entry, all nine entries are stored. Each row of `held` (k, n) is the mask of one set; held DOFs are decoupled.
-    Sets share a front if neither the front nor its children have held DOFs. The sets are factorised one after another, when needed; only
-    results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
+    If a pair of nodes has an entry, all nine entries are stored. Each row of `held` (k, n) is the mask of one set of DOFs; the DOFs in the
+    set are decoupled. Sets share a front if neither the front nor its children have held DOFs. The sets are factorised one after another,
+    when needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
     parts, met = [_Entries.of(order, matrix) for matrix in matrices], np.any(by_node, axis=(0, 2))

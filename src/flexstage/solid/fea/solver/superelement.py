@@ -28,7 +28,7 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A reduced component in its own axes. Its n coordinates are the twist of each interface at this interface, `warps`, and internal ones.
+    """A reduced component in its own axes. Its n coordinates are interface twists (each at the interface), `warps` and internal ones.
 
     `stiffness` and `inertia` have a matrix (n, n) for each link and body. `bodies` (6, n) give the mean twists of bodies; `inertia`
     includes the inertia `body_inertia` (6, 6) for these twists. `resultants` (6, n) give the wrenches at the centres of links, in the

@@ -111,7 +111,7 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
 
 
 def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
-    """Build the contribution of a superelement. Its strain is the twists of ports relative to the first, and the modes `inner` (m, N)."""
+    """Build the contribution of a superelement. Its strain is the port twists relative to the first port, and modes `inner` (m, N)."""
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
