@@ -165,7 +165,7 @@ class StageResults:
 
     @cached_property
     def felt(self) -> StageResults:
-        """Results of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else these results."""
+        """Results of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else this object."""
         if self.loaded is None or self.loaded.model is None:
             return self
         other = self.with_model(self.loaded.model)
@@ -206,7 +206,7 @@ class StageResults:
 
     @cached_property
     def stress_at_strokes(self) -> HingeStress:
-        """Stress of hinges over the box of required strokes, from zero voltage."""
+        """Stress of hinges over the box of required strokes; hinges are stress-free at zero voltage."""
         box = self._driven_box()
         start = np.zeros(len(self.limits.actuators)) if self.limits.zero is None else -self.limits.zero
         mapping = self.per_motion
@@ -218,7 +218,7 @@ class StageResults:
 
     @property
     def per_motion(self) -> Matrix:
-        """Inputs per displacement of the platform, with lost motion corrected."""
+        """Inputs per unit displacement of the platform, with lost motion corrected."""
         return self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
 
     def corners(self) -> tuple[tuple[str, ...], Array]:

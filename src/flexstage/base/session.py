@@ -16,7 +16,7 @@ class Session:
         self._kept: dict[str, Any] = {}
 
     def keep(self, most: int) -> Callable[[_Function], _Function]:
-        """Decorate a pure function of hashable values to cache at most `most` results.
+        """Return a decorator that caches at most `most` results of a pure function with hashable arguments.
 
         >>> session = Session()
         >>> half = session.keep(2)(lambda value: value / 2)

@@ -13,7 +13,7 @@ HIGHEST = {"notch": 0.8, "fillet": 1.0, "toroid": 0.5}
 
 
 def concentration(profile: Profile, thickness: Number) -> Number | None:
-    """Compute the notch factor in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), R the radius at the throat.
+    """Compute the notch factor in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), with the throat radius R.
 
     R is a^2/c for an ellipse, and the fillet radius for a corner-filleted hinge. A straight hinge has K_t = 1, because its corners are not
     specified.

@@ -90,7 +90,7 @@ class Combination(Instrument):
 
 
 def combine_gauges(members: Sequence[tuple[Number, Instrument]]) -> Combination:
-    """Combine weighted gauges with independent errors into one.
+    """Combine weighted gauges with independent errors into a single gauge.
 
     With weights w_i, the range is sum |w_i| r_i, and the resolution is sum |w_i| q_i (worst signs). The noise density is (sum w_i^2
     n_i^2)^(1/2), or `None` if any n_i is unknown. The bandwidth is the common bandwidth of the gauges, or `None` if bandwidths differ or

@@ -60,7 +60,7 @@ INNER_MODES = Bound(0.0, 20.0)
 
 
 class Elastic(Description):
-    """Elastic part; `kind` is its name in files. `parts.PARTS` lists the kinds."""
+    """Elastic part; `kind` is the name of its kind in design files. `parts.PARTS` lists the kinds."""
 
     kind: ClassVar[str]
     inner_modes: int = 0

@@ -193,7 +193,7 @@ class VoiceCoil(Coil):
     resistance between them. `duty` is the duty cycle of the current in short use. The input is the static current, which is V/R for a
     voltage drive.
 
-    The model neglects the change of R with temperature, saturation, and the current lag L/R of a voltage drive (significant above R / (2 pi
+    The model neglects saturation, the change of R with temperature, and the current lag L/R of a voltage drive (significant above R / (2 pi
     L)).
     """
 

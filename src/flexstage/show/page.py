@@ -112,7 +112,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """The summary of a page in one line. `good`: whether requirements are met, or `None` without requirements."""
+    """The summary of a page in one line. `good` is true if the requirements are met, false if not, and `None` without requirements."""
 
     text: str
     good: bool | None = None
@@ -151,8 +151,8 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
 def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
     """Write the HTML page with the sections that are not `None`. Texts are escaped; SVG is inserted unchanged.
 
-    `stages` contains the data of the page's viewers by key. The content security policy permits only scripts in the page, and no loading of
-    other files.
+    `stages` maps the keys of the page's viewers to their data. The content security policy permits only scripts in the page, and no loading
+    of other files.
 
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True

@@ -636,7 +636,7 @@ def named_number(bench: StageResults, asked: Measure) -> Array:
 
 
 def over(kind: MeasureKind) -> MeasureKind:
-    """Extend a measure of linear models (a frequency, a stiffness) to its worst value along a path. Refuses other measures.
+    """Extend a measure of linear models (a frequency, a stiffness) to its worst value along a path. Other measures are refused.
 
     >>> over(frequency).form
     'frequency.<n> over <path>'

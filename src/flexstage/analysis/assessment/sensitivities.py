@@ -244,7 +244,7 @@ def project(contributions: Contributions, shapes: Array) -> Array:
 
 
 def slope(values: Array) -> Array:
-    """Return derivatives from the values of a description with complex steps.
+    """Return derivatives from values that were computed with complex steps.
 
     >>> slope(np.array([1.0 + 2e-20j])).round(9).tolist()
     [2.0]

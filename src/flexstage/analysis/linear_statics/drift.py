@@ -41,7 +41,7 @@ _FITS = 1e-7
 class Drift(Result):
     """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
 
-    `motion` is at the platform and named points (six components each). `gauges` are the readings, `forces` the six stress resultants of
+    `motion` has six components for the platform and for each named point. `gauges` are the readings, `forces` the six stress resultants of
     each elastic link. `ground` is the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the
     fixed point of the ground; linear temperature fields are zero there. `taken` names the material used for each body. `bodies` are the
     twists (..., 6, 4) of all bodies at their reference points.

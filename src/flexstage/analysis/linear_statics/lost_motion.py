@@ -28,7 +28,7 @@ LOADED = "geometric"
 
 
 class Shares(dict[str, Array]):
-    """Contributions (...) to a total by name."""
+    """Contributions (...) to a total, by name."""
 
     def __str__(self) -> str:
         """Contributions in the first design, largest first, with four digits; rounding errors (below 1e-9 of the largest) are omitted.

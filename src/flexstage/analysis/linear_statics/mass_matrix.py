@@ -30,8 +30,8 @@ class MassMatrix(Result):
 
     `rigid` (..., 6, 6) is the mass matrix of the point's `body` alone, with its payloads. `reduced` (..., 6, 6) includes the whole stage:
     all other masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA Journal 3, 380, 1965). `reduced` and the
-    stiffness at the same point give natural frequencies that are never below the frequencies of the whole model. Without local modes
-    nearby, both sets of frequencies are close to each other. `reasons` explain unknown masses.
+    stiffness at the same point give natural frequencies that are never below the frequencies of the whole model. The frequencies from
+    `reduced` are close to those of the whole model if there are no local modes nearby. `reasons` explain unknown masses.
     """
 
     point: str

@@ -40,15 +40,15 @@ class Omitted:
 
     @property
     def unexplained(self) -> Annotated[float, RATIO]:
-        """The interaction relative to the full response."""
+        """Magnitude of `interaction`, relative to the full response."""
         return abs(self.interaction / self.full)
 
 
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static responses with restricted and with full parts, for the `channel` = (output, input).
 
-    `simple` locks or frees degrees of freedom, by part or by link (`vertical/pivot`). Each locked or freed degree of freedom regains its
-    elasticity individually. Batches are not supported.
+    `simple` maps parts or links (`vertical/pivot`) to their elastic and their free degrees of freedom; all others are locked. Each locked
+    or freed degree of freedom regains its elasticity individually. Batches are not supported.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.cases.double_triangle import EQUATION_3

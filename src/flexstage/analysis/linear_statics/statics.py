@@ -145,7 +145,7 @@ class FreedomStiffness(Result):
 
 @check_arguments
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
-    """Compute stiffness by degree of freedom for fewer than six ideal motions: along ideal motions, and along constraints.
+    """Compute the stiffness along each ideal motion and along each constraint of a stage with fewer than six ideal motions.
 
     `found` is the statics at a point of the platform. The stiffness is 1 / C_ii with the other degrees of freedom free, and K_ii with the
     other degrees of freedom fixed; NaN for a locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and
@@ -166,7 +166,7 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
 
 
 def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
-    """Return a table of stiffness (..., n, 2) by named degree of freedom, with the others free or fixed.
+    """Return a table of stiffness (..., n, 2) by named degree of freedom, with the other degrees of freedom free or fixed.
 
     >>> by_freedom(np.ones((2, 2)), ("z", "rx")).unit
     (('N/m', 'N/m'), ('N m/rad', 'N m/rad'))

@@ -160,7 +160,7 @@ def evaluate(expression: Expression, scope: Scope) -> Amount:
 
 
 def is_plain(text: str) -> bool:
-    """Return whether a string has the form of one number with an optional unit, valid or not.
+    """Return whether a string has the form of one number with an optional unit; the unit need not be valid.
 
     >>> is_plain("25,4 mm"), is_plain("3 m^-2"), is_plain("2*arm"), is_plain("arm"), is_plain("1 mm + 2 mm")
     (True, True, False, False, False)

@@ -25,7 +25,7 @@ class Quantity:
 
     @property
     def noun(self) -> str:
-        """Name with its article.
+        """Name of the quantity, with an article.
 
         >>> ANGLE.noun, LENGTH.noun
         ('an angle', 'a length')

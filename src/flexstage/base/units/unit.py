@@ -180,7 +180,7 @@ def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
 
 
 def example(quantity: Quantity) -> str:
-    """Return an example of a quantity for input. The example of a ratio has no quotes.
+    """Return an example of input for a quantity. The example of a ratio has no quotes.
 
     >>> example(RATIO)
     '0.3'

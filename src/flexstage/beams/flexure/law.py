@@ -54,7 +54,7 @@ class FlexureLaw:
     - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures due to unit amplitudes, at the points of the integration rule
       and of the rotation steps.
     - `plate` (..., n, 2, e): the fields a2 and a4.
-    - `compliance` (..., n, 3): stretch and shear per force.
+    - `compliance` (..., n, 3): stretch and shear compliance.
     - `trapeze` (...): I_p / A; `stretch` (..., 2): the stiffness against Gaussian curvature.
     - `length` [m], `rigidity` [N m^2].
     - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].

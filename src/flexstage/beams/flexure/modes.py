@@ -56,7 +56,7 @@ def gauss(size: int) -> Rule:
 
 
 def polynomials(count: int, places: Array) -> Array:
-    """Evaluate the Legendre polynomials P_k(2 s - 1), k < `count`, at `places` s (p,). Returns (count, p).
+    """Evaluate the Legendre polynomials P_k(2 s - 1), k < `count`, at `places` s (p,); shape (count, p).
 
     >>> polynomials(2, np.array([0.0, 1.0])).tolist()
     [[1.0, 1.0], [-1.0, 1.0]]
@@ -65,7 +65,7 @@ def polynomials(count: int, places: Array) -> Array:
 
 
 def slopes(count: int, places: Array) -> Array:
-    """Evaluate the derivatives of the `polynomials` with respect to s at `places` s (p,). Returns (count, p).
+    """Evaluate the derivatives of the `polynomials` with respect to s at `places` s (p,); shape (count, p).
 
     >>> slopes(2, np.array([0.5])).ravel().tolist()
     [0.0, 2.0]

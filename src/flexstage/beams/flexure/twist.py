@@ -47,7 +47,7 @@ def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
 
 
 def orthonormal(modes: Modes, weights: Array) -> Modes:
-    """Orthonormalise the functions for the integral with `weights` (p,) at their points.
+    """Orthonormalise functions with respect to the integral that has the `weights` (p,) at their points.
 
     In short wide leaves, the functions of `restrained_twist_modes` are nearly linearly dependent, which would amplify rounding errors.
 

@@ -21,9 +21,9 @@ _TAPER = 0.75
 def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
     """Compute responses (f, k, k) from the reference to the measured pose, with all mode frequencies raised by a relative `offset`.
 
-    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r, for the sampled plant P and the controller's responses K from error, pose and reference. The
-    mode frequencies are raised by scaling the time of the plant; the plant's lags therefore become shorter. Hold and delay of a sampled
-    plant are unchanged.
+    The measured pose is y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r, with the sampled plant P and the controller's responses K_e, K_y and
+    K_r from error, pose and reference. The mode frequencies are raised by scaling the time of the plant; the plant's lags therefore become
+    shorter. Hold and delay of a sampled plant are unchanged.
     """
     P = pose_plant(plant, offset).sweep(frequencies)
     back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
@@ -49,7 +49,7 @@ class Band:
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
     def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
-        """Compute Q R + (1 - Q) I `beyond` (f, k, k) with the gains Q: the responses R in the band, and a constant `beyond` the band."""
+        """Compute Q R + (1 - Q) I `beyond` (f, k, k) with the filter's gains Q: responses R within the band, a constant outside."""
         share = self.gains(frequencies)
         inside = share > 0.0
         responses, share = respond(frequencies[inside]), share[inside, None, None]
@@ -76,7 +76,8 @@ def through(responses: Array, path: Array) -> Array:
 
     The differences between successive points are transformed, because they end at zero. The response of an inverse model may have poles
     outside the unit circle. This response is then the sum of a stable component forward in time and an antistable component backward in
-    time (Devasia, Chen & Paden, IEEE Transactions on Automatic Control 41 (1996) 930). Therefore the filtered path starts before the path.
+    time (Devasia, Chen & Paden, IEEE Transactions on Automatic Control 41 (1996) 930). Therefore the filtered path starts before the
+    original path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

@@ -98,7 +98,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     P is estimated from records with local polynomials (`local_responses`), or is the analyser's response. Errors of P are assumed to be
     circular normal. For an analyser's response, their variance is |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010,
     chapter 9), on the assumption that one input was driven at a time. Confidence limits are quantiles of 100 random draws; they are widened
-    if the draws are biased. Aliasing from above half the sampling rate is neglected.
+    if the draws are biased. Aliasing of signals above half the sampling rate is neglected.
 
     Only frequency lines within the band of the identification and below half the sampling rate are used.
     """

@@ -43,7 +43,7 @@ class Pole:
 
 @dataclass(frozen=True, eq=False)
 class Verdict(InNotebook):
-    """Stability of a loop: stable if all closed-loop poles decay, with exact hold and delay.
+    """Stability of a loop, which is stable if all closed-loop poles decay. Hold and delay are modelled exactly.
 
     `slowest_pole` is the least stable pole. `poles` (k,) are all poles as rates [1/s] (ln z / T of a sampled loop), least stable first.
     With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to `gain_high`. For a stable loop, this

@@ -21,7 +21,7 @@ TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min":
 
 
 def round_nominal(value: float, uncertainty: float) -> float:
-    """Find the number that agrees with a rounded value and has the fewest digits; the digits of its inverse also count.
+    """Find the number within the uncertainty of a value that has the fewest digits, or whose inverse has the fewest digits.
 
     `uncertainty` is the relative uncertainty of the value.
 

@@ -109,7 +109,7 @@ class Options(CheckedFields):
 
 
 def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:
-    """Assign roles and units to channels. The user's options precede the file; roles that are still unknown follow from the channel names.
+    """Assign roles and units to channels: from the user, or else from the file. Roles that are still unknown follow from the names.
 
     Raises `DesignError` for patterns that match no channel and for channels with both roles.
 

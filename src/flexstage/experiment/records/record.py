@@ -167,7 +167,7 @@ class Record(InNotebook, CheckedFields):
         return tuple(known.index(name) for name in chosen)
 
     def select(self, names: Iterable[str]) -> Record:
-        """Return the record of the named channels, in this order.
+        """Return the record of the named channels, in the sequence of the names.
 
         >>> both = Record((Channel("a"), Channel("b")), 1.0, InMemory(np.array([[1.0, 2.0]])))
         >>> both.select(["b"]).values.tolist()
@@ -209,9 +209,9 @@ class Record(InNotebook, CheckedFields):
 class Responses(InNotebook, CheckedFields):
     """Frequency responses of an analyser: H_ij = output i over input j, for e^{+j omega t}.
 
-    `frequencies` (f,) in Hz, ascending; `values` (f, outputs, inputs), complex, in output unit over input unit. `coherence` has the same
-    shape, if stored; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names of outputs or of
-    inputs and for shapes that do not match.
+    `frequencies` (f,) in Hz, ascending; `values` (f, outputs, inputs), complex, in output unit over input unit. `coherence`, if stored, has
+    the shape of `values`; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names of outputs
+    or of inputs and for shapes that do not match.
 
     >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))
     >>> one.at("S1", "u1").tolist(), one.units

@@ -40,9 +40,9 @@ class Lines:
 class Cells:
     """Sums over frequency cells from `low` to `high` (c,) in Hz, with the block number (c,) and the `count` of lines (c,) of each cell.
 
-    Z = P_a(x) U_i is the product of Legendre polynomials, a = 0..7, and the block's drive. The sums are `own` (c, 8, n, 8, n) = Z^H Z,
-    `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. The `width` columns include the drives of all blocks; `columns[block]` are
-    the columns of one block.
+    Z = P_a(x) U_i is the product of the Legendre polynomials P_a, a = 0..7, and the drive U_i of the block. The sums are `own` (c, 8, n, 8,
+    n) = Z^H Z, `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. The `width` columns include the drives of all blocks;
+    `columns[block]` are the columns of one block.
     """
 
     low: Array
@@ -78,9 +78,9 @@ class Cells:
 def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
     """Compute Fourier transforms of a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), after subtraction of the mean.
 
-    The record is divided into at least `least` blocks, or as many as memory requires. `inputs` are the column indices of the record's
-    inputs in the drive. The transient of the first block has the column index `first`, the transient of the next block `first` + 1, and so
-    on.
+    The record is divided into at least `least` blocks, or into as many blocks as memory requires. `inputs` are the column indices of the
+    record's inputs in the drive. The transient of the first block has the column index `first`, the transient of the next block `first` +
+    1, and so on.
 
     >>> from flexstage.experiment.records.record import Channel, Role, in_memory
     >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 8.0, np.eye(8)[:, :2])
@@ -127,7 +127,7 @@ def edges(poles: Array, low: float, high: float) -> Array:
 
 
 def gather_cells(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:
-    """Sum lines over the cells of every band, block by block; `bounds` are the cell limits of each band in Hz.
+    """Sum the lines in the cells of every band, block by block; `bounds` are the cell limits of each band in Hz.
 
     >>> lines = Lines(np.arange(8.0), np.ones((8, 1)), 2.0 * np.ones((8, 1)), (0,))
     >>> [cells] = gather_cells([lines], [np.array([2.0, 4.0, 6.0])])

@@ -21,7 +21,7 @@ class WindowLeakage:
     """Effect of the `window` on estimated responses, for segments of length `seconds`.
 
     With white noise as input, the estimated impulse response is the true impulse response times the window's autocorrelation r(t/T). A fit
-    accounts for this effect with functions 1/(j f - p) smeared in the same way.
+    accounts for the window with functions 1/(j f - p) that are smeared in the same way.
     """
 
     window: Window

@@ -99,7 +99,7 @@ def noise_density(spectra: Spectra) -> Array:
 
 
 def dependent_inputs(spectra: Spectra) -> list[Finding]:
-    """Check for linearly dependent inputs: the smallest eigenvalue of their coherence matrix is zero.
+    """Check whether inputs are linearly dependent: then the smallest eigenvalue of their coherence matrix is zero.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> dependent_inputs(example_spectra())

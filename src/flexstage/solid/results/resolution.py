@@ -40,7 +40,7 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; figures not in `errors` have none.
+    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; missing errors are unknown.
 
     The estimated error is the change from the previous order; at order two, it is a quarter of this change. At order two, errors of the
     `unestimated` figures, which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further,
@@ -67,7 +67,7 @@ def converge(
     sizes: Callable[[_Result], Mapping[str, float]] | None = None,
     measure: Callable[[Reduction], Mapping[str, float]] | None = None,
 ) -> Converged[_Result]:
-    """Raise the element order (3, 4) until the estimated errors are within the accuracy, or compute at the order in `asked`.
+    """Raise the element order (3, 4) until the estimated errors are within the accuracy, or compute only at the fixed order in `asked`.
 
     Errors are estimated by a computation with one order less. `sizes` returns the number of unknowns of each component; if it is specified,
     components that cause a large fraction of the change get a higher order first. `measure` computes only the figures of a result.
@@ -149,7 +149,7 @@ def _next_part(shares: Mapping[str, Array], sizes: Mapping[str, float], raised: 
 
 
 def orders_of(asked: Resolution) -> tuple[int, ...]:
-    """Return the orders to compute, in sequence.
+    """Return the element orders to compute, the lowest first.
 
     >>> orders_of(Resolution()), orders_of(Resolution(order=2))
     ((3, 4), (2,))
@@ -168,7 +168,7 @@ def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
 
 
 def reduction_of_order(order: int) -> Reduction:
-    """Return the standard reduction with elements of an order.
+    """Return the standard reduction with elements of this `order`.
 
     >>> reduction_of_order(2).fineness.order
     2

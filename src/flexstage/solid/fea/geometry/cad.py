@@ -33,9 +33,9 @@ _PLATE = 0.22
 
 @dataclass(frozen=True)
 class Cad:
-    """A drawn component: `shape` [mm], whose faces have the names `faces`, and whose solids are named `medium 0`, ... after `media`.
+    """A drawn component: `shape` [mm] has faces named `faces`, and one solid, named `medium 0`, ..., for each of `media`.
 
-    If cut at `mirrors`, the shape is the positive side.
+    If the component is cut at `mirrors`, `shape` is its positive side.
     """
 
     shape: occ.TopoDS_Shape

@@ -80,7 +80,7 @@ def _inertia(solid: occ.TopoDS_Shape) -> Array:
 
 
 def with_properties(found: ImportedProperties, file: str, material: str, density: float, solid: str | None = None) -> Imported:
-    """Describe a measured solid of this `density` [kg/m^3]. If the file contains several solids, `solid` is the name of this one.
+    """Describe a measured solid of this `density` [kg/m^3]. If the file contains several solids, `solid` is the name of the measured solid.
 
     >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
     >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)

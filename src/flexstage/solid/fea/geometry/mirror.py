@@ -70,7 +70,7 @@ class Mirrors:
 
 
 def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shape:
-    """Cut a drawing at symmetry planes. Return its positive side, with named cut faces and the material name `medium 0`.
+    """Cut a drawing at symmetry planes; return the positive side, with named cut faces and the material name `medium 0`.
 
     >>> quarter = cut_at_mirrors(occ.Box(occ.Pnt(0, -1, -1), occ.Pnt(1, 1, 1)), Mirrors((1, 2)))
     >>> round(quarter.mass, 9), sorted(face.name for face in quarter.faces if face.name)

@@ -61,7 +61,7 @@ def frame_key(frame: Frame) -> str:
 
 
 def distance_text(millimetres: float) -> str:
-    """Format a length [mm] as text, in um below a millimetre.
+    """Format a length [mm] as text; lengths below a millimetre are in um.
 
     >>> distance_text(0.012), distance_text(2.5)
     ('12 um', '2.5 mm')

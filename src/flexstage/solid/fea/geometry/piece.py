@@ -113,7 +113,7 @@ def medium(material: Material, rotation: Array | None = None) -> Medium:
 
 
 def is_mirrored(own: Medium, axis: int) -> bool:
-    """Return whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing; true for isotropic media.
+    """Return whether a medium is symmetric about the plane normal to an axis (0, 1, 2) of the drawing; true if it is isotropic.
 
     >>> is_mirrored(Medium(1.0, 0.3, 1.0), 0)
     True

@@ -136,7 +136,7 @@ def hinge_compliance(
     refined, until the error estimated from the last changes (`estimate.remaining`) is within `accuracy.error`.
 
     `roots` selects the ends that are on blocks (default: both ends of a profile that `rises`, else no end). `stub` [m] is the length of a
-    stub. The default is the hinge's full height; if the block is wider than the hinge, it is five times the hinge's `grain`.
+    stub. The default of `stub` is the hinge's full height, or five times the hinge's `grain` if the block is wider than the hinge.
 
     The stub's length is a convention; it changes C_x by 1 to 3 %, C_y by about 10 %, and C_rx by a large factor if the hinge is several
     times wider than high. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made. The functions in `told`

@@ -73,8 +73,8 @@ def reduce_parts(
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
     """Make a job for each component. Ends of its links may deform, so that an isolated unit and the unit in its stage have the same job.
 
-    An encased stack has no fixed-interface modes. In such modes, the ceramic would bend without its casing, which is connected only to the
-    end faces.
+    An encased stack has no fixed-interface modes: the ceramic would bend in them without its casing, which is connected only to the end
+    faces.
 
     >>> reduce_jobs((), Reduction())
     []

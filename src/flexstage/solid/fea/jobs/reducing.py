@@ -126,7 +126,7 @@ class Reduce(ComponentJob):
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
     def seconds(self) -> float:
-        """Return the CPU time of the reduction [s], estimated from the measured work; without one, the usual time of a small job."""
+        """Return the CPU time of the reduction [s]: estimated from the measured work if known, else the usual time of a small job."""
         return super().seconds() if self.measured is None else self.measured.seconds(self.columns)
 
     def summary(self, found: Superelement) -> str:
@@ -151,7 +151,7 @@ class Reduce(ComponentJob):
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
     def excess(self, memory: float, seconds: float) -> Iterator[Finding]:
-        """Return an error if the measured work of the reduction exceeds a memory [bytes] or a time [s]."""
+        """Return an error if the measured work of the reduction exceeds the limits of `memory` [bytes] or time in `seconds`."""
         found = self.measured and self.refusal(self.measured.counts, memory)
         if found:
             yield found

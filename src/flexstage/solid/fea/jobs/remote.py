@@ -81,7 +81,7 @@ class Pool:
         return found
 
     def end(self, worker: Worker) -> None:
-        """End a process, or remove an ended one."""
+        """End a process, or remove a process that has ended."""
         self.idle = [each for each in self.idle if each is not worker]
         self._latest = {kin: each for kin, each in self._latest.items() if each is not worker}
         worker.end()
@@ -96,8 +96,8 @@ def work_all(
 ) -> None:
     """Run jobs in separate processes; `done` is called with each finished job and its result.
 
-    The processes remain in the `pool`, if any. After all jobs, raises `DesignError` with the jobs that were refused, crashed, or exceeded
-    time or memory. An exception from `progress` or an interruption ends all processes.
+    The processes remain in the `pool` if one is specified. After all jobs, raises `DesignError` with the jobs that were refused, crashed,
+    or exceeded time or memory. An exception from `progress` or an interruption ends all processes.
 
     >>> work_all([], print, Limits())
     """

@@ -68,7 +68,7 @@ class Job(ABC):
         return 0.0
 
     def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
-        """Return an error if the job does not fit into memory, with a smaller alternative."""
+        """Return an error if the job does not fit into memory; the error names a smaller alternative."""
         return None
 
 

@@ -63,9 +63,9 @@ class Hold(Enum):
 class Reduction(CheckedFields):
     """Options of a component's reduction: mesh and order, number of fixed-interface modes, constraint of its interface faces.
 
-    `residual` adds the static response with faces fixed to the inertia forces of the faces' motions. This response replaces the omitted
-    modes to first order in frequency squared. Components whose content is in `raised` have elements of one order more than the others. With
-    `static`, the `raised` components have no modes, because static results do not need them.
+    With `residual`, the basis includes static responses, with faces fixed, to the inertia forces of the faces' motions. These responses
+    replace the omitted modes to first order in frequency squared. Components whose content is in `raised` have elements of one order more
+    than the others. With `static`, the `raised` components have no modes, because static results do not need them.
     """
 
     fineness: Fineness = Fineness()

@@ -14,7 +14,7 @@ from flexstage.spatial.frame import twist_transform
 
 
 def is_encased(form: object) -> bool:
-    """Return whether a form is a stack with the bending rigidity of a casing.
+    """Return whether a form is a stack with a specified bending rigidity, which includes a casing.
 
     >>> is_encased(Piezo(stroke=1e-4, stiffness=17e6, length=0.162, diameter=0.01))
     False

@@ -68,7 +68,7 @@ class Component:
 
     @property
     def floats(self) -> bool:
-        """Whether the component has no joint: it can move as a whole, because only parts without a shape support it."""
+        """Whether the component has no joint, and can move as a whole: only parts without a shape support it."""
         return not self.interfaces and not self.fixed
 
 
@@ -159,7 +159,7 @@ def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
 
 
 def is_elastic(assembly: Assembly, body: str) -> bool:
-    """Return whether a body has outlines: such bodies are elastic solids, others and the ground are rigid.
+    """Return whether a body has outlines. Bodies with outlines are elastic solids; other bodies and the ground are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

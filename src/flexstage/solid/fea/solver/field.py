@@ -163,7 +163,7 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 
 
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """Build the form int stress(u) : strain(v) dV [N/m] over some elements (mask) or all; if not `assemble`, only for `apply_form`.
+    """Build the form int stress(u) : strain(v) dV [N/m] over some elements (mask) or all; not assembled, it is only for `apply_form`.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -298,8 +298,8 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array:
     """Return all twelve non-rigid motions (n, 12) that are linear or quadratic over a face; the face is normal to a frame's x axis.
 
-    Here y and z are divided by `size` [m]. In the frame's axes, the first three motions are in-plane strains and shear. In the other nine,
-    u_x, u_y or u_z is y^2, y z or z^2.
+    Here y and z are divided by `size` [m]. In the frame's axes, the first three motions are in-plane strains and shear. In the other nine
+    motions, u_x, u_y or u_z is y^2, y z or z^2.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -370,7 +370,7 @@ def degrees_of(space: Field, elements: Array) -> Array:
 
 
 def nodes_on(space: Field, face: str) -> Array:
-    """Return a mask (n / 3,) of the functions of one component of the space on a named face.
+    """Return a mask (n / 3,) of the basis functions of one displacement component that belong to a named face.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -237,7 +237,7 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Ite
     """Factorise a sum of matrices, positive definite on the free nodes, once for each set of `held` (fixed) degrees of freedom.
 
     Matrices are `scipy.sparse.csr_array` with both triangles. The DOFs of all nodes along x come first, then those along y, then along z.
-    If a pair of nodes has an entry, all nine entries are stored. Each row of `held` (k, n) is the mask of one set of DOFs; the DOFs in the
+    For each pair of coupled nodes, all nine entries are stored. Each row of `held` (k, n) is the mask of one set of DOFs; the DOFs in the
     set are decoupled. Sets share a front if neither the front nor its children have held DOFs. The sets are factorised one after another,
     when needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
     """
