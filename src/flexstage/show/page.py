@@ -104,7 +104,7 @@ Block: TypeAlias = Prose | Picture | Viewer | JoinedViewers | Facts | BlockRow |
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a page with a heading."""
+    """Section of a page, with a heading."""
 
     title: str
     blocks: tuple[Block, ...]

@@ -102,7 +102,7 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int
 
 
 def block_count(record: Record, least: int = 1) -> int:
-    """Compute the number of blocks for a record's transform: at least `least`, or as many as memory requires.
+    """Compute the number of blocks for a record's transform: the larger of `least` and the number that memory requires.
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> block_count(in_memory([Channel("y")], 8.0, np.ones((16, 1))))

@@ -62,7 +62,7 @@ def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def check_together(mechanisms: Sequence[Mechanism], cache: Cache | None, pool: Pool | None = None) -> None:
-    """Check stages in parallel and record the sound stages in the cache. Errors are not reported here, but when a stage is used.
+    """Check stages in parallel and record the sound stages in the cache. Errors are reported later, when a stage is used.
 
     >>> check_together((), None)
     """

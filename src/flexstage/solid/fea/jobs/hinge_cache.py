@@ -76,7 +76,7 @@ class HingeJob(StoredJob):
 def hinges_from_cache(forms: Mapping[str, HingeForm], accuracy: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
     """Return the 6x6 compliance matrices of hinges by name. Missing matrices are computed in parallel processes, and stored immediately.
 
-    The solver is needed only for missing matrices. Raises `DesignError` with all failures.
+    The solver is needed only for missing matrices. Raises a `DesignError` that lists all failures.
 
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}

@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Return counts that give, at a uniform `order`, the DOFs of this mesh with one order more in the fraction `share` of it.
+        """Return counts corrected for a fraction `share` of elements of one order more, so that `freedoms` at `order` gives the DOFs.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0

@@ -60,7 +60,7 @@ def reduce_parts(
     """Reduce components. `springs` maps names of components to springs that connect their interfaces.
 
     Only components missing from the cache need the solver. Each superelement is stored immediately, so that an interrupted computation can
-    resume. Raises `DesignError` with all failures.
+    resume. Raises a `DesignError` that lists all failures.
 
     >>> reduce_parts((), Reduction())
     ()
