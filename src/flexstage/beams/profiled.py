@@ -46,7 +46,7 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
 def proportions(profile: Profile, thickness: Number, family: str) -> tuple[Range, ...]:
     """Return the ratio with a validated range: thickness over throat radius, or length over thickness of a straight profile.
 
-    For free-form profiles, the result is empty: they were not compared with finite elements.
+    For a `Contour` (V, parabola, table, ...), which was not compared with finite elements, the result is empty.
     """
     return () if isinstance(profile, Contour) else (_proportion(profile, thickness, family),)
 
