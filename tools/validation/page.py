@@ -126,25 +126,25 @@ def commit() -> str:
 
 
 _INTRODUCTION = """\
-This page compares results of flexstage with published and independent results. Nothing is fitted, and `make validation` or `make check-all`
+This page compares results of flexstage with published and independent results. No model is fitted, and `make validation` or `make check-all`
 computes every value again.
 
-Only references are typed, each with its source. The tolerance is that of the source; without one, our value must round to the printed
-digits. For hinges the error of beam theory is known, and our value must have *this error*."""
+Only reference values are entered by hand, each with its source. The tolerance of a row is the tolerance of its source. If the source has no
+tolerance, our value must round to the printed digits. For hinges, the error of beam theory is known, and our value must have *this error*."""
 
 _SCORES = """\
-Published results of stages that were built or computed. Sources, tolerances and the commands that repeat a row are on the page
-[published stages](validation/published.md); the [gallery](gallery.md) shows the cases."""
+The table compares published results of stages that were built or computed. Sources, tolerances and the commands that repeat a row are on
+the page [published stages](validation/published.md); the [gallery](gallery.md) shows the cases."""
 
 _APART = """\
-The page [disagreements](disagreements.md) explains the reasons. `make validation` fails if a row disagrees that is not recorded, and if a
-recorded one agrees."""
+The page [disagreements](disagreements.md) explains every recorded disagreement. `make validation` fails if an unrecorded row disagrees, or
+if a recorded row agrees."""
 
 _ABSENT = """\
-* Not published in the paper: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
-* Further large displacements (vibrations of loaded beams, invariants of any stage): `tests/analytic/test_loaded_vibrations.py`,
-  `tests/laws/test_nonlinear.py`.
-* Three-dimensional finite elements of other stages: `tests/models`."""
+* The paper does not publish the mappings R_a and R_s, masses, radii, damping, and the values of its figures 11 and 12.
+* `tests/analytic/test_loaded_vibrations.py` and `tests/laws/test_nonlinear.py` check further results at large displacements: vibrations of
+  loaded beams, and invariants of any stage.
+* `tests/models` checks the three-dimensional finite elements of other stages."""
 
 _TREE = """\
 ```{toctree}
