@@ -140,24 +140,27 @@ class Values:
 
     def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
         designs, variables = shares.shape
-        require_valid(self._design(shares))
         each = variables if slopes else 1
         rows = np.repeat(shares, each, axis=0)
         if slopes:
             rows = rows + 1j * _STEP * np.tile(np.eye(variables), (designs, 1))
         with np.errstate(all="ignore"):
             stepped = self._design(rows)
+            require_valid(replace(stepped, formulas=Table({})))  # formulas have just been computed
             bench = StageResults(stepped, self._command)
             modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
-            columns: list[Sequence[Scalars | NumberedFrequency]] = []
+            columns: dict[tuple[str, str], Sequence[Scalars | NumberedFrequency]] = {}  # an objective may be a limit, too
             for measure in self.measures:
+                if (measure.key, measure.point) in columns:
+                    continue
                 if measure.kind in _SPECTRAL:
-                    columns.append([self._nth_frequency(own, measure) for own in modes])
+                    found: Sequence[Scalars | NumberedFrequency] = [self._nth_frequency(own, measure) for own in modes]
                 elif not measure.kind.analytic:
-                    columns.append(self._central_differences(measure, shares, slopes=slopes))
+                    found = self._central_differences(measure, shares, slopes=slopes)
                 else:
-                    columns.append(_scalars(measure.kind.pieces(bench, measure), _extreme(measure), (designs, each), slopes=slopes))
-        return [Point(shares[design], tuple(column[design] for column in columns)) for design in range(designs)]
+                    found = _scalars(measure.kind.pieces(bench, measure), _extreme(measure), (designs, each), slopes=slopes)
+                columns[measure.key, measure.point] = found
+        return [Point(shares[design], tuple(columns[each.key, each.point][design] for each in self.measures)) for design in range(designs)]
 
     def _nth_frequency(self, own: tuple[Spectrum, ...], measure: Measure) -> NumberedFrequency:
         platform = measure.kind is platform_frequency

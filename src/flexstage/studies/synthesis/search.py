@@ -238,7 +238,7 @@ def optimum(
 ) -> Optimum:
     """Return the optimum of a pair for a goal; `replaced` contains changed limits. Raises `DesignError` if the analysis fails."""
     study = _study(spec, pair, [goal], replaced)
-    found = optimise(study, load_optimisation(study), progress)
+    found = optimise(study, load_optimisation(study), progress, contradictory=1)
     if found.interrupted:
         raise KeyboardInterrupt
     return found

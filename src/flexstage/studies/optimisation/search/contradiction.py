@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from flexstage.base.number import Array
 from flexstage.studies.optimisation.result import Contradiction
@@ -13,31 +14,32 @@ from flexstage.studies.optimisation.setting import Setting
 from flexstage.studies.optimisation.values import Point
 
 CountReport = Callable[[int], None]
-_MOST = 6
 _COUNTS = 1e-4
 
 
-def contradictions(setting: Setting, starts: Sequence[Array], told: CountReport | None = None) -> tuple[Contradiction, ...]:
-    """Find irreducible infeasible sets of limits, from any of the starts. Returns an empty tuple if all limits can be met.
+def contradictions(
+    setting: Setting, starts: Sequence[Array], told: CountReport | None = None, *, most: int = 6
+) -> tuple[Contradiction, ...]:
+    """Find at most `most` irreducible infeasible sets of limits, from any of the starts. Returns an empty tuple if all limits can be met.
 
     The largest relative violation is minimised. Then limits are removed as long as the remaining limits still contradict each other. The
     resulting set is irreducible: if any one of its limits is removed, the others can be met. The search is repeated for the limits that are
     in no set yet.
     """
-    return tuple(_irreducible_sets(setting, list(starts), told))
+    return tuple(islice(_irreducible_sets(setting, list(starts), told), most))
 
 
 def _irreducible_sets(setting: Setting, starts: list[Array], report: CountReport | None) -> Iterator[Contradiction]:
     left = tuple(range(len(setting.kept)))
-    for _ in range(_MOST):
+    while True:
         found = _least_violation(setting, left, starts, report)
         if found is None or found.violation <= SPARE:
             return
         begins = [found.point.shares, starts[0]]
         held = tuple(number for number, weight in zip(left, found.weights, strict=True) if weight > _COUNTS)
         alone = _least_violation(setting, held, begins[:1], report)
-        suspects = held if alone is not None and alone.violation > SPARE else left
-        chosen, ended = _irreducible_set(setting, suspects, begins, report)
+        chosen, ended = (held, alone) if alone is not None and alone.violation > SPARE else (left, found)
+        chosen, ended = _irreducible_set(setting, chosen, ended, begins, report)
         yield Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point)
         left = tuple(number for number in left if number not in chosen)
 
@@ -52,11 +54,9 @@ class _Least:
 
 
 def _irreducible_set(
-    setting: Setting, suspects: tuple[int, ...], starts: list[Array], report: CountReport | None
+    setting: Setting, suspects: tuple[int, ...], ended: _Least, starts: list[Array], report: CountReport | None
 ) -> tuple[tuple[int, ...], _Least]:
-    """An irreducible infeasible set of limits; halves are tried before single ones."""
-    ended = _least_violation(setting, suspects, starts, report)
-    assert ended is not None  # noqa: S101  one of the starts is an evaluated design
+    """An irreducible infeasible subset of limits, whose least violation is known; halves are tried before single ones."""
     size = max(1, len(suspects) // 2)
     place = 0
     while place < len(suspects):

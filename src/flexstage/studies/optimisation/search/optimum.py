@@ -30,12 +30,13 @@ Progress = Callable[[str], None]
 
 @check_arguments
 @one_thread
-def optimise(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Optimum:
+def optimise(study: Study, definition: OptimisationProblem, progress: Progress | None = None, *, contradictory: int = 6) -> Optimum:
     """Find the best design within the variables' ranges that meets all limits.
 
     From every start, a sequence of convex models with exact derivatives is solved. Frequencies are represented by matrices of neighbouring
     modes, so that modes may be repeated or cross. The method is local; `Optimum.agreeing` counts the starts that end at an equally good
-    design. A keyboard interrupt ends the search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
+    design. Without a design that meets all limits, at most `contradictory` sets of limits that contradict one another are found. A keyboard
+    interrupt ends the search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> found = optimise(*leaf_study())
@@ -53,7 +54,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     point = best_of(problem, traces)
     broken, against, near = interrupted, (), None
     if not interrupted:
-        against, near, interrupted = _conclude(set_up, point, traces, counted)
+        against, near, interrupted = _conclude(set_up, point, traces, counted, contradictory)
     starts = tuple(_start(set_up, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
     return Optimum(
         study=study,
@@ -82,7 +83,7 @@ def _search_all(set_up: Setting, begins: Array, traces: list[Trace], counted: Co
 
 
 def _conclude(
-    set_up: Setting, point: Point | None, traces: list[Trace], counted: Count
+    set_up: Setting, point: Point | None, traces: list[Trace], counted: Count, sets: int
 ) -> tuple[tuple[Contradiction, ...], Rounded | None, bool]:
     """Limits that contradict where there is no design, else the design rounded; whether that was interrupted."""
     try:
@@ -91,7 +92,7 @@ def _conclude(
             return (), round_to_steps(set_up, set_up.problem, point), False
         counted.about = "contradictory limits"
         ends = [trace.point.shares for trace in traces if trace.point is not None]
-        return contradictions(set_up, ends, counted), None, False
+        return contradictions(set_up, ends, counted, most=sets), None, False
     except KeyboardInterrupt:
         return (), None, True
 
