@@ -189,7 +189,7 @@ def test_loose_outlines_are_named_and_not_estimated(at: tuple[float, float, floa
     solids = {"left": Block("steel", (half, SIDE, SIDE), at=(-0.5 * half, 0.0, 0.0)), "right": Block("steel", (half, SIDE, SIDE), at=at)}
     found = body_flexibilities(stage(solids, {"a": (-half, 0.0, 0.0), "b": (half, 0.0, 0.0)}))
     assert found.found == ()
-    assert "outlines separate" in found.reasons["platform"]
+    assert "its outlines are not connected" in found.reasons["platform"]
 
 
 def test_bodies_without_outlines_are_listed_by_default() -> None:

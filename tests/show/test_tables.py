@@ -72,7 +72,7 @@ REACH = {
     "resolution": "Pose resolution of the gauges",
     "clearance": "Clearance",
     "platform_lines": "Forces of the platform",
-    "stack_lines": "Stacks against the stage",
+    "stack_lines": "Stacks pushing against the stage",
     "stress": "Stress in the hinges",
     "buckling": "Buckling",
     "loads": "Axial forces of the stacks",

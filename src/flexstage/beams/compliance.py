@@ -208,7 +208,7 @@ def _regular(part: Elastic, specified: Array, freedoms: Array = _EVERY) -> Array
         moved = np.max(np.abs(first_design(motions, 2)[first_design(none, 1)]), axis=0) > _NAMED
         names = ", ".join(ALL[index].value for index in freedoms[moved])
         what = f"singular stiffness in {names}, so that the compliance does not exist"
-        raise refuse(f"a part of kind {part.kind}", what, "Specify a stiffness there, or use the lumped model, which needs no compliance")
+        raise refuse(f"a part of kind {part.kind}", what, "Specify this stiffness, or use the lumped model, which needs no compliance")
     return np.where(np.any(none, axis=-1, keepdims=True)[..., None], np.nan, specified)
 
 

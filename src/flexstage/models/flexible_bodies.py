@@ -121,7 +121,7 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
         if reason is None and (ends := [link for link in links if np.any(span(link.part))]):
             estimate = _estimate(body, ends, mechanism.materials, known)
             found += [] if estimate is None else [estimate]
-            reason = None if estimate is not None else "outlines separate or too thin"
+            reason = None if estimate is not None else "its outlines are not connected, or are too thin"
         if reason is not None:
             reasons[name] = reason
     return BodyEstimates(tuple(found), reasons)

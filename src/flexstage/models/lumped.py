@@ -68,7 +68,7 @@ _Value = TypeVar("_Value")
 
 
 class Masses(Enum):
-    """Masses in the model: all bodies and links, or only the platform with its payloads (the paper's model)."""
+    """Masses in the model: all bodies and links, or only the platform with its payloads (Shin & Moon)."""
 
     ALL = "all"
     PLATFORM = "platform"

@@ -1,4 +1,4 @@
-"""Mapped model: the paper's axial-spring model (Eqs. 17-28 of Shin & Moon).
+"""Mapped model: the axial-spring model of Shin & Moon (Eqs. 17-28).
 
 The stiffness is K = R_a^T diag(K_i) R_a, with the stiffness K_i of each unit in actuator coordinates. Only the platform has mass. Hinges
 have no bending stiffness.
@@ -38,7 +38,7 @@ _COLLINEAR = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class LeverStiffness:
-    """Springs of a lever unit in SI units (figure 7 and equations 3 to 11 of the paper).
+    """Springs of a lever unit in SI units (figure 7 and equations 3 to 11 of Shin & Moon).
 
     The fields are `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, and `long_arm` r_2.
     """
@@ -74,7 +74,7 @@ class LeverStiffness:
 
 @check_arguments
 def mapped(mechanism: Mechanism) -> LinearModel:
-    """Build the model of the paper: axial springs in actuator coordinates under a rigid platform.
+    """Build the model of Shin & Moon: axial springs in actuator coordinates under a rigid platform.
 
     The stiffness of each unit is specified in the description, or computed by `unit_stiffness`. Raises `DesignError` if it is neither
     specified nor computable; the error names the key that specifies it.

@@ -102,8 +102,8 @@ def sensitivities(
 ) -> Sensitivities:
     """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to `parameters` (default: all numbers).
 
-    Modes with a relative frequency gap below `cluster` count as repeated; only the derivative of their mean frequency is smooth. All modes
-    of a cluster are listed. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises
+    Modes with a relative frequency gap below `cluster` count as repeated; only the derivative of their mean frequency is smooth. The result
+    includes all modes of a cluster. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises
     `DesignError` for unknown addresses, and for addresses that are not a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle

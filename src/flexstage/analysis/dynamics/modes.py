@@ -161,9 +161,9 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
 
     A platform mode is a mode at which the sum of the modal compliances reaches a tenth of the platform's static compliance in one more
     direction (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that
-    shapes align with the platform's axes. Shapes without platform motion align with the coordinates that move most. Modes below `limit`
-    [Hz] are listed. Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of
-    the lowest modes are computed.
+    shapes align with the platform's axes. Shapes without platform motion align with the coordinates that move most. The result contains all
+    computed modes; `limit` [Hz] affects only `Modes.listed`. Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900
+    degrees of freedom), only about 30 of the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

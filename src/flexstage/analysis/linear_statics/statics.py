@@ -217,7 +217,7 @@ def directional(tensor: Array) -> DirectionalStiffness:
 
 
 def centre_of_stiffness(stiffness: Array) -> Array:
-    """Compute the centre of stiffness (..., 3) relative to the reference: the antisymmetric part of K_tt^-1 K_tr.
+    """Compute the centre of stiffness (..., 3) relative to the reference: the axial vector of the antisymmetric part of -K_tt^-1 K_tr.
 
     At this point, the coupling of forces and rotations is minimal. If there is a fully uncoupled centre c, K_tr = -K_tt [c]x. Loncaric
     (1987) gives another definition of the centre of stiffness.

@@ -52,7 +52,7 @@ class UnitResult(UnitOutput):
 
 
 def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
-    """Analyse the first instance of every isolated unit with exactly one actuator at its output. Batches are not supported.
+    """Isolate and analyse, for every unit, the first instance with exactly one actuator at its output. Batches are not supported.
 
     A unit that does not work in isolation (a carriage guided by neighbouring units) is omitted. With `omissions`, the errors of lever
     theory are also computed, which takes most of the time.

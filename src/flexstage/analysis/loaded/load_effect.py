@@ -34,8 +34,8 @@ else:
     linearise = LazyModule("flexstage.models.nonlinear.linearise")
     nonlinear = LazyModule("flexstage.models.nonlinear.stage")
 
-_BENT = "flexures that are not straight when free"
-_WARM = "temperatures"
+_BENT = "initially curved flexures"
+_WARM = "thermal expansion"
 FELT = 0.01
 """Relative change of a stiffness or frequency due to permanent load, above which results are computed for the loaded stage."""
 _MODES = 6
@@ -119,7 +119,8 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
         return None
     causes = [*([_BENT] if any(map(_is_bent, mechanism.parts.values())) else []), *([_WARM] if _is_warm(mechanism) else [])]
     bound, bent = _bound(result), bool(causes)
-    cause = f"weight, payloads, forces and {' and '.join(causes)}" if bent else LoadEffect.cause
+    *others, last = ("weight", "payloads", "forces", *causes)
+    cause = f"{', '.join(others)} and {last}"
     if bound < FELT and not bent:
         return LoadEffect(bound, "", "", None)
     still = standing(mechanism)

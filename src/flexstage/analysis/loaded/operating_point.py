@@ -74,9 +74,9 @@ def operating_point(
 
     First, the static equilibrium is solved under weight, payloads, preloads, specified forces, `loads` (as in `equilibrium`) and
     `temperature` (a uniform change [K]). `at` then displaces coordinates from this equilibrium by forces of constant direction:
-    `platform.y` [m], or `platform.rz` [rad], a component of the rotation vector. In the linear model, the coordinates displaced by `at` are
-    free, and the displacing forces are constant. Strokes of stacks, by stack name, are fixed at their values in `at`. Coordinates in
-    `fixed` are fixed at their equilibrium value, or at the value in `at`.
+    `platform.y` [m], or `platform.rz` [rad], a component of the rotation vector. `at` can also contain strokes, by stack name; the
+    operating point is computed with these strokes. In the linear model, the coordinates displaced by `at` are free, and the displacing
+    forces are constant. Coordinates in `fixed` are fixed at their equilibrium value, or at the value in `at`.
 
     Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium. The error then reports the largest fraction
     of the displacement that has an equilibrium. `DesignError` is also raised if the stage is unstable under the forces.

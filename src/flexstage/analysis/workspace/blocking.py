@@ -27,7 +27,7 @@ class StackLine(Result):
     [N] (compression) are the intersection of the stack's line with the stage's line.
     """
 
-    TABLE: ClassVar[Layout] = Layout("Stacks against the stage")
+    TABLE: ClassVar[Layout] = Layout("Stacks pushing against the stage")
 
     actuators: tuple[str, ...]
     free: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("free displacement", digits=4)]

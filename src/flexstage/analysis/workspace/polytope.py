@@ -101,7 +101,8 @@ def _crossings(normals: Array, offsets: Array) -> Array:
     half = count // 2
     choices = [choice for choice in combinations(range(count), size) if len({index % half for index in choice}) == size]
     if len(choices) > _MOST_VERTEX_CANDIDATES:
-        raise refuse("reachable polytope", f"{half} strokes give {len(choices)} candidate vertices", "Check poses by low <= R_a xi <= high")
+        what = f"too many candidate vertices for {half} strokes (got {len(choices)}, expected {_MOST_VERTEX_CANDIDATES} or fewer)"
+        raise refuse("reachable polytope", what, "Check poses by low <= R_a xi <= high")
     picked = np.array(choices)
     square = normals[picked]
     scale = np.linalg.norm(normals, axis=0)

@@ -92,8 +92,8 @@ class SingleAxis(Result):
 class Utilisation(Result):
     """Actuator utilisation for a box of simultaneous displacements.
 
-    `demand` (..., n) [m] is the largest absolute stroke over the corners of the box, `available` (..., n) [m] the symmetric stroke. Stops
-    within reach are listed with the actuators (`stops/end`); their gaps are listed as strokes.
+    `demand` (..., n) [m] is the largest absolute stroke over the corners of the box, `available` (..., n) [m] the symmetric stroke. The
+    actuators include stops within reach (`stops/end`), with their gaps as strokes.
     """
 
     TABLE: ClassVar[Layout] = Layout("Simultaneous strokes", "demand available ratio")

@@ -251,8 +251,8 @@ def _freeing(blockage: Blockage) -> str:
     hint = f"ree {', '.join(others)} {word} {last}" if others else f"ree {last}"
     if not blockage.ends:
         return f"F{hint}"
-    hinge = "a hinge at each end" if len(blockage.ends) > 1 else "a hinge at that end"
-    return f"The actuator joins {' and '.join(blockage.ends)} without a hinge and is elastic only along its axis: add {hinge}; or f{hint}"
+    hinge = "a hinge at each end" if len(blockage.ends) > 1 else "a hinge at this end"
+    return f"The actuator, elastic only along its axis, has no hinge at {' and '.join(blockage.ends)}: add {hinge}; or f{hint}"
 
 
 def _scales(names: tuple[str, ...], rotation: Number) -> Array:

@@ -36,7 +36,7 @@ _TURN, _ASIDE, _MISFIT, _UNEVEN = 0.35, 0.2, 0.25, 0.1
 - Trapezoidal error of the factor's change.
 """
 _NOISE, _NONE = 1e-7, 1e-3
-"""Rounding level of a factor (relative), and of slopes and stiffnesses over the largest."""
+"""Rounding level of a factor (relative), and of slopes and stiffnesses relative to the largest."""
 _AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
 """Target fraction of these bounds for the next step, limits of its length over the last one, and over the distance to zero stiffness."""
 

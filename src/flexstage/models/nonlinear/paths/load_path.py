@@ -52,7 +52,7 @@ class LoadPath:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Limit points and bifurcations, in order. A bifurcation is listed at the mean of the two adjacent values."""
+        """Limit points and bifurcations, in order. A bifurcation has the mean of the two adjacent values."""
         return tuple(itertools.chain.from_iterable(map(self._between, range(len(self.values) - 1))))
 
     def _between(self, place: int) -> Iterator[Event]:
