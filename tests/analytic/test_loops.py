@@ -274,10 +274,10 @@ def test_what_cannot_be_controlled_is_refused():
         plant(lumped(blind), ideal(blind), sampling_chain(blind))
     whole = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3), modes=6)
     with pytest.raises(
-        DesignError, match=r"different sampling \(got 0\.001 s, expected 0\.0001 s as the hardware\)\. Use one sampling rate for both"
+        DesignError, match=r"different sampling \(got 0\.001 s, expected 0\.0001 s, like the hardware\)\. Use one sampling rate for both"
     ):
         loop(whole, replace(integral(whole, 1.0), step=1e-3))
-    with pytest.raises(DesignError, match=r"\(got continuous, expected sampled every 0\.0001 s as the hardware\)"):
+    with pytest.raises(DesignError, match=r"\(got continuous, expected sampled every 0\.0001 s, like the hardware\)"):
         loop(whole, replace(integral(whole, 1.0), step=None))
     with pytest.raises(DesignError, match=r"missing output command\.B6"):
         loop(whole, select(integral(whole, 1.0), ["error.x"], [f"command.B{number}" for number in range(1, 6)]))

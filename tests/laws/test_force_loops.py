@@ -130,7 +130,10 @@ def test_a_current_amplifier_clips_at_the_peak_and_rises_by_the_volts_that_are_l
     [
         (LoopSetup(amplifier=AmplifierSetup(resistance=50.0)), "motor: resistance applies to amplifiers of stacks"),
         (LoopSetup(amplifier=AmplifierSetup(noise=1e-6)), "motor: noise_density applies to"),
-        (LoopSetup(hysteresis=HystereticStacks(width=0.1)), "hysteresis: hysteresis needs stacks, but forces drive the stage (motor)"),
+        (
+            LoopSetup(hysteresis=HystereticStacks(width=0.1)),
+            "hysteresis: hysteresis needs stacks, but the stage has force actuators (motor)",
+        ),
         (LoopSetup(compensate=(Compensation.LOAD,)), "compensate: load compensation is not supported"),
     ],
 )

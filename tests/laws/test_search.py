@@ -186,7 +186,9 @@ def test_the_same_search_finds_the_same():
 
 
 def test_what_cannot_be_had_at_once_is_said(monkeypatch):
-    with pytest.raises(DesignError, match=r"rejection and an overshoot of at most 20 % conflict: the nearest design violates them by .* %"):
+    with pytest.raises(
+        DesignError, match=r"rejection and an overshoot of at most 20 % conflict: the nearest design violates these limits by .* %"
+    ):
         found(rejection=4000.0)
     with pytest.raises(DesignError, match="no loop with this rejection remains stable with this delay"):
         found(rejection=500.0, delay_margin=1e-3)

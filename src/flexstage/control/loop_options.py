@@ -66,7 +66,12 @@ class LoopOptions:
     ] = None
     coordinates: Annotated[
         Axes | None,
-        word_option("--coordinates", Axes, "Coordinates of the single loops. Default: platform.", show_default=False),
+        word_option(
+            "--coordinates",
+            Axes,
+            "One loop for each actuator, platform motion or platform mode. Default: platform.",
+            show_default=False,
+        ),
     ] = None
     bandwidth: Annotated[
         str | None, text_option("--bandwidth", "VALUE", "Bandwidth of plain tuning. Default: the controller is optimised.")

@@ -25,7 +25,7 @@ def serve(
     realtime: Annotated[bool, typer.Option("--realtime/--no-realtime", help="Simulation in real time, or as fast as possible.")] = True,
     changes: Changes = None,
 ) -> None:
-    """Run a virtual controller of a stage over TCP.
+    """Serve a virtual controller of a stage over TCP.
 
     Simulates the same loop as flexstage loop. Programs on this computer control it with commands of the General Command Set 2.0. Ctrl+C
     ends the command.

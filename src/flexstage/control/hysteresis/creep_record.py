@@ -23,7 +23,7 @@ _SCATTER = 0.25
 class IdentifiedCreep:
     """Identified creep: the `law`, the `stroke` [m] at the reference time, and the fitted `span` of times [s] after the step.
 
-    `rms` is the error over the span relative to the stroke, with equal weight per decade.
+    `rms` is the rms error within the span, divided by the stroke; every decade of time has equal weight.
     """
 
     law: LogCreep

@@ -45,8 +45,8 @@ class Fit:
     def model(self) -> PrandtlIshlinskii:
         """Return the model with its envelope shifted to pass through 0, the unloaded state.
 
-        A shift of the input shifts the play outputs equally. The shift therefore changes strokes only while they depend on the initial
-        state.
+        A shift of the input shifts the play outputs equally, and the offset of the model compensates for this. Strokes therefore change
+        only while play outputs depend on the initial state.
         """
         knots = self.form.knots
         values = knots[0] + np.concatenate([[0.0], np.cumsum(self.slopes * np.diff(knots))])

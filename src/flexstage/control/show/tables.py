@@ -94,7 +94,9 @@ def _retained(found: Retention) -> str:
     """Number of retained modes, and the reason."""
     count = f"The plant retains {count_modes(found.retained)} of the model's {found.total}"
     if not found.complete:
-        return f"{count}, as specified; {int(np.sum(found.wanted)) - found.retained} more are significant with this controller."
+        return (
+            f"{count}, as specified. Omitted modes that are significant with this controller: {int(np.sum(found.wanted)) - found.retained}."
+        )
     largest = f"{number(found.gain, 3)} at resonance ({number(found.frequency or 0.0, 4)} Hz)"
     change = "make a margin appear or vanish" if np.isinf(found.change) else f"change margins by at most {percent(found.change)}"
     why = "by loop gain with this controller; the others add their static compliance"

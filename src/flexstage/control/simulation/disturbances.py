@@ -46,6 +46,8 @@ def _findings(named: Mapping[str, Array], known: list[str], count: int, readings
         if name not in known:
             yield Finding(name, "unknown input of the loop", suggest_nearest(name, known))
         elif values.shape != (count,):
-            yield Finding(name, f"wrong length (got {values.shape}, expected {count} samples as the reference)", "Use equal lengths")
+            yield Finding(
+                name, f"wrong length (got {values.shape}, expected {count} samples, the length of the reference)", "Use equal lengths"
+            )
         elif name not in readings and not np.all(np.isfinite(values)):
             yield Finding(name, "a number is not finite", "Correct the series")

@@ -53,8 +53,8 @@ class ResolvedSetup:
     inner loops. `highest` [Hz] is the highest of the f lowest platform modes, for f loop coordinates. If `displaced` is true, the model is
     linearised at an operating point, including its deflection. `loaded` is the effect of permanent load on the nominal stage; if it is
     significant, the model is the loaded stage. With a measured plant, `predicted` is the model's plant. `damping` describes the force
-    feedback, `charge` the charge amplifiers. The plants include force feedback and charge amplifiers; `model` is at constant voltage, which
-    is correct for statics. `solid` is the finite-element stage, if that is the model.
+    feedback, `charge` the charge amplifiers. `plant` and `whole` include both, if specified. In `model`, stacks have the stiffness at
+    constant voltage, which is correct for statics. `solid` is the finite-element stage, if that is the model.
     """
 
     mechanism: Mechanism
@@ -231,10 +231,12 @@ def _force_findings(kinematics: Kinematics, setup: LoopSetup) -> Iterator[Findin
     """Findings for stack options of a force-driven stage."""
     if kinematics.thrusts and setup.hysteresis is not None:
         yield Finding(
-            "hysteresis", f"hysteresis needs stacks, but forces drive the stage ({', '.join(kinematics.thrusts)})", "Remove hysteresis"
+            "hysteresis",
+            f"hysteresis needs stacks, but the stage has force actuators ({', '.join(kinematics.thrusts)})",
+            "Remove hysteresis",
         )
     if kinematics.thrusts and setup.amplifier.settings.charge is not None:
-        what = f"charge drive needs stacks, but forces drive the stage ({', '.join(kinematics.thrusts)})"
+        what = f"charge drive needs stacks, but the stage has force actuators ({', '.join(kinematics.thrusts)})"
         yield Finding("amplifier.kind", what, 'Remove kind = "charge": coil amplifiers control the current')
     if kinematics.thrusts and Compensation.LOAD in setup.compensate:
         what = "load compensation is not supported for force actuators"

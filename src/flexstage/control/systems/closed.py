@@ -205,12 +205,12 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
             found.append(
                 Finding(
                     "controller",
-                    f"different sampling (got {kinds[0]}, expected {kinds[1]} as the hardware)",
+                    f"different sampling (got {kinds[0]}, expected {kinds[1]}, like the hardware)",
                     "Use one sampling rate for both",
                 )
             )
     elif abs(controller.step / given.hardware.step - 1.0) > 1e-9:
-        what = f"different sampling (got {controller.step:g} s, expected {given.hardware.step:g} s as the hardware)"
+        what = f"different sampling (got {controller.step:g} s, expected {given.hardware.step:g} s, like the hardware)"
         found.append(Finding("controller", what, "Use one sampling rate for both"))
     at = given.coordinates
     known = _names((*at.motions("error."), *at.motions("reference."), *at.motions("pose."), *at.commands("applied.")))

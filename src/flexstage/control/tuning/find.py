@@ -274,7 +274,7 @@ def _missed(within: Field, found: Outcome, far: float) -> Iterator[Finding]:
     if far > _UNMET and wanted:
         reached = ", ".join(f"{name} {each:.4g} Hz" for name, each in zip(within.seen.loops.names, found.rejection[0], strict=True))
         kept = f"{', '.join(wanted)} and an overshoot of at most {100.0 * spec.overshoot:g} % conflict"
-        what = f"{kept}: the nearest design violates them by {100.0 * far:.2g} %, with rejection up to {reached}"
+        what = f"{kept}: the nearest design violates these limits by {100.0 * far:.2g} %, with rejection up to {reached}"
         yield Finding("controller.goal", what, "Relax one requirement, allow a higher peak of S, or sample faster")
 
 

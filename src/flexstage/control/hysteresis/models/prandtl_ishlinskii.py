@@ -83,6 +83,6 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
         if envelope.axes not in (1, model.axes):
             yield Finding(
                 f"envelope {name}",
-                f"wrong number of axes (got {envelope.axes}, expected {model.axes}, as for the plays)",
+                f"wrong number of axes (got {envelope.axes}, expected {model.axes}, like the plays)",
                 "Use one envelope per axis, or one for all",
             )

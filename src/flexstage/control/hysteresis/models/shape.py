@@ -18,7 +18,7 @@ Range: TypeAlias = tuple[float, float]
 class MajorLoop:
     """Settled major loop over a range: outputs (k, axes) of the branches `up` and `down` at ascending inputs `volts` (k,).
 
-    `stroke` (axes,) is the output span between the ends. `width` (axes,) is the largest distance between the branches at one input,
+    `stroke` (axes,) is the output span between the ends. `width` (axes,) is the largest distance between the branches at the same input,
     relative to `stroke`.
     """
 
@@ -33,7 +33,7 @@ class MajorLoop:
 
     @property
     def width(self) -> Array:
-        """Largest distance between the branches at one input (axes,), relative to the stroke."""
+        """Largest distance between the branches at the same input (axes,), relative to the stroke."""
         return np.max(self.down - self.up, axis=0) / self.stroke
 
 
