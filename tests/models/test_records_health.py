@@ -201,7 +201,7 @@ def test_names_and_units_are_held_against_the_stage() -> None:
     faults = examine(whole, STAGE).faults
     assert [(fault.kind, fault.finding.what) for fault in faults] == [
         (FaultTolerance.NAMES, "unknown output"),
-        (FaultTolerance.UNITS, "wrong unit (got V, expected m as for the stage's output)"),
+        (FaultTolerance.UNITS, "wrong unit (got V, expected m, the unit of the stage's output)"),
     ]
     assert usable_record(whole, frozenset({FaultTolerance.NAMES, FaultTolerance.UNITS}), STAGE).names == ("u1", "u2", "u3", "S1", "S3")
 

@@ -419,7 +419,9 @@ def test_responses_in_columns(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.frequencies, LINES, rtol=1e-15)
     assert ([each.name for each in found.outputs], found.units) == (["x", "y"], (("um/V",), ("um/V",)))
     np.savetxt(path, columns[:, :4], header="frequency [Hz],x re,x im,y re", delimiter=",")
-    with pytest.raises(DesignError, match=r"its columns are not complete responses: x re, x im, y re\. Write real and imaginary part"):
+    with pytest.raises(
+        DesignError, match=r"its columns do not form complete responses \(columns: x re, x im, y re\)\. Write real and imaginary part"
+    ):
         read(path)
 
 

@@ -1,4 +1,4 @@
-"""Comparison of model, finite elements and test (the paper's Fig. 12), with modes paired by their shapes at the sensors."""
+"""Comparison of model, finite elements and test (Fig. 12 of Shin & Moon), with modes paired by their shapes at the sensors."""
 
 from __future__ import annotations
 

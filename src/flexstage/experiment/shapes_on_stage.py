@@ -47,7 +47,7 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     """Fit ideal stage motions to the measured shapes s by least squares: x = V (R V)^+ s.
 
     The columns of V are the ideal motions. Each row of R is a gauge's row of R_s, or a component of a body's twist. Rotations are weighted
-    by the kinematics' characteristic length. For six gauges the result equals R_s^-1 s (equation 14 of the paper). All bodies move with the
+    by the kinematics' characteristic length. For six gauges the result equals R_s^-1 s (Eq. 14 of Shin & Moon). All bodies move with the
     ideal kinematics: hinges are free about their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -392,7 +392,7 @@ def _coherence(contents: Contents, shape: tuple[int, ...], arrays: Arrays) -> Ar
     sizes = ", ".join(f"{each.name} {each.shape}" for each in stored)
     raise refuse(
         contents.where,
-        f"wrong shape of the coherence (got {sizes}, expected {shape} as for the responses)",
+        f"wrong shape of the coherence (got {sizes}, expected {shape}, the shape of the responses)",
         'Assign the coherence (array "coherence=...")',
     )
 

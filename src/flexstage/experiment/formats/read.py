@@ -19,7 +19,7 @@ _START = 4096
 _OTHERS = {
     b"TDSm": "a TDMS file of LabVIEW",
     b"RIFF": "a WAV file",
-    b"PK\x03\x04": "a zip archive, as spreadsheets and npz files are",
+    b"PK\x03\x04": "a zip archive, e.g. a spreadsheet or an npz file",
     b"\x93NUMPY": "an npy file of numpy",
     b"\x1f\x8b": "compressed by gzip",
     b"%PDF": "a PDF",

@@ -149,8 +149,8 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
 
     The test statistic is Wald's for the mode's participation in the inputs. The largest component of the mode's shape and the
     participations of transients are fixed. Transients count as inputs if the inputs cannot be distinguished from them near the mode, as for
-    an impact at the start of a record. Two modes that can replace each other both fail the test. Responses without transients are not
-    tested: the result is infinite.
+    an impact at the start of a record. Two modes that can replace each other both fail the test. Modes of measured frequency responses,
+    which contain no transients, are not tested: the result is infinite.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit

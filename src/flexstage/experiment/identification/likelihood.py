@@ -214,8 +214,8 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
     """Compute the lower bound of the noise variance (p, c) per line.
 
     Cells represent responses to six digits. The relative error e of the cells is common to all N lines, so averaging does not reduce it.
-    The lower bound, N e^2 times the power, prevents false modes and too narrow intervals. `rounding` (p,) is the variance caused by
-    rounding of an output's samples, without other noise.
+    The lower bound, N e^2 times the power, prevents false modes and confidence intervals that are too narrow. `rounding` (p,) is the
+    variance caused by rounding of an output's samples, without other noise.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells

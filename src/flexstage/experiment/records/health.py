@@ -311,7 +311,7 @@ def _name_faults(
                 advice = f'{suggest_nearest(channel.name, known)}; rename the channel, or accept "names" to omit it'
                 yield _fault(FaultTolerance.NAMES, where, channel.name, f"unknown {kind}", advice)
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
-                what = f"wrong unit (got {channel.unit}, expected {known[channel.name]} as for the stage's {kind})"
+                what = f"wrong unit (got {channel.unit}, expected {known[channel.name]}, the unit of the stage's {kind})"
                 yield _fault(
                     FaultTolerance.UNITS, where, channel.name, what, 'Specify its unit, or accept "units" to use the numbers unchanged'
                 )

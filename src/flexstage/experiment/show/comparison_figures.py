@@ -1,4 +1,4 @@
-"""Comparison figure of model, finite elements and test (the paper's Fig. 12)."""
+"""Comparison figure of model, finite elements and test (Fig. 12 of Shin & Moon)."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def response_data_section(seen: Identification) -> Section | None:
             "Moon) equals H1 for a single input and for uncorrelated inputs."
         )
         estimators = Picture(picture, text)
-    return section("Responses", [Picture(drawn, caption), fold("H1, H2 and the paper's ratio", estimators)])
+    return section("Responses", [Picture(drawn, caption), fold("H1, H2 and the ratio of Shin & Moon", estimators)])
 
 
 def coherence_section(seen: Identification) -> Section | None:

@@ -1,4 +1,4 @@
-"""Frequency responses and coherences from spectra: H1, H2, the paper's ratio, ordinary and multiple coherence."""
+"""Frequency responses and coherences from spectra: H1, H2, the ratio of Shin & Moon, ordinary and multiple coherence."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def h2(spectra: Spectra) -> Responses:
 
 
 def spectral_ratio(spectra: Spectra) -> Responses:
-    """Compute the spectral ratio T_ij = G_ij / G_ii of the paper (Shin & Moon, equation 29), arranged as output over input.
+    """Compute the spectral ratio T_ij = G_ij / G_ii of Shin & Moon (equation 29), arranged as output over input.
 
     The ratio equals H1 for a single input or uncorrelated inputs. For correlated inputs, the ratio is not a transfer function.
 

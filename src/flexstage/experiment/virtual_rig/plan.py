@@ -52,8 +52,8 @@ class Plan:
     """Set-up of a virtual test with all defaults resolved, in SI, for each driven actuator (m,) and each gauge (p,).
 
     `units` (p,) are the units of gauge readings. `rms` (m,) are rms values of the commanded `inputs`. `bandwidths` (m,) are the bandwidths
-    of amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) their drifts after a minute.
-    `highest` is the highest platform mode [Hz].
+    of amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) standard deviations of their
+    drifts after one minute. `highest` is the highest platform mode [Hz].
     """
 
     setup: RigSetup

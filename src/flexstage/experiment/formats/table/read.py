@@ -213,7 +213,7 @@ def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ..
         'magnitude and phase, "frequency [Hz], S1 magnitude [um/V], S1 phase [deg]"'
     )
     named = f"; or select the complete ones (channels): {', '.join(whole[:12])}" if all(whole) and whole else ""
-    raise refuse(str(path), f"its columns are not complete responses: {', '.join(names[:12])}", advice + named)
+    raise refuse(str(path), f"its columns do not form complete responses (columns: {', '.join(names[:12])})", advice + named)
 
 
 def _rectangular(path: Path, layout: Layout, chosen: list[int], found: Array, order: tuple[str, ...]) -> Array:

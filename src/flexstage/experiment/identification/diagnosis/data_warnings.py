@@ -67,7 +67,7 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
         window = " The window of the responses is unknown; if there was one, damping is too large." if known.unstated else ""
         found.append(
             f"the fit leaves a systematic residual near {listed}. The mode may be nonlinear, close to another, excited by unrecorded "
-            f"forces, or changing during the test. Test with a smaller or longer drive, or with finer frequency lines.{window}"
+            f"forces, or changing during the test. Test with a lower amplitude, a longer duration or finer frequency lines.{window}"
         )
     moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
     if moved:

@@ -73,7 +73,7 @@ class Peak:
         """Reason why the peak is not accepted as a mode, with advice.
 
         >>> Peak(120.0, PeakCause.NARROW, 1e-6, None, 0.3125, ("y",)).reason
-        'a single line (spacing 0.3125 Hz): a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
+        'a peak at a single line (spacing 0.3125 Hz): a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
         """
         if self.doubt is PeakCause.TONE:
             return f"a tone absent from the inputs{_mains(self)}, or an oscillation without decay in the record. It is removed."
@@ -85,7 +85,7 @@ class Peak:
             return "its damping is too uncertain: noise or a neighbouring mode could cause it. Record longer."
         if self.doubt is PeakCause.WEAK:
             return "noise could cause such a peak. Record longer, or increase the drive."
-        lines = f"a single line (spacing {self.resolution:.4g} Hz)"
+        lines = f"a peak at a single line (spacing {self.resolution:.4g} Hz)"
         return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
 
 
@@ -104,7 +104,7 @@ def peaks(
     """List all peaks that are not modes, by ascending frequency.
 
     The list contains removed tones, `refused` resonances, which the inputs do not excite, and `lost` resonances, which are not significant.
-    A lost resonance is listed only if noise alone would give an equally strong peak with a probability below 1/1000. For an analyser's
+    It contains a lost resonance only if noise alone would give an equally strong peak with a probability below 1/1000. For an analyser's
     responses, the list also contains prominent single lines.
 
     >>> from flexstage.experiment.identification.evidence import evidence
@@ -169,7 +169,7 @@ def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
     """List prominent single lines of the residual responses.
 
     An F-test compares each line with a cubic through its neighbours, from the 2nd to the 12th on both sides. The false-alarm rate is one in
-    twenty data sets. Lines within four half-widths of a mode, or within three lines, belong to the mode and are not listed. Responses with
+    twenty data sets. Lines within four half-widths of a mode, or within three lines, belong to the mode and are omitted. Responses with
     unevenly spaced lines are not tested.
 
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))

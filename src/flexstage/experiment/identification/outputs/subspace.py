@@ -50,7 +50,8 @@ class AmbientMode:
 class Band:
     """Covariances of the outputs in a frequency band, by block (b, lags, p, p), with lags in steps of `step` [s].
 
-    Frequencies are shifted down by `low` [Hz]. The searched part of the band is `sweep`. Outputs are multiplied by `scale` (p,).
+    Frequencies are shifted down by `low` [Hz]. `sweep` has the limits of the band, and of its part in which poles are kept. Outputs are
+    multiplied by `scale` (p,).
     """
 
     covariances: Array
