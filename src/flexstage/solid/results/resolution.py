@@ -19,7 +19,7 @@ _Result = TypeVar("_Result")
 HIGHEST = 4
 _LEFT, _MATTERS = 0.5, 0.1
 """Expected share of a component's change remaining at the next order, on the shipped stage 0.05 to 0.45. And the smallest relevant
-change of a figure over the largest one of any component."""
+change of a figure divided by the largest one of any component."""
 _AT_ORDER_TWO = 0.25
 """Order one is inaccurate: on hinges and blocks order two had a tenth of its error, never a quarter."""
 _LOCKED = 0.5

@@ -86,7 +86,7 @@ def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table | None:
 
 
 def command_table(name: str, unit: SolidUnit) -> Table:
-    """Tabulate the output and the lost motion of a unit over its stroke (as in the paper's Table 2)."""
+    """Tabulate the output and the lost motion of a unit over its stroke (as in Table 2 of Shin & Moon)."""
     return array_table(f"Output and lost motion of the {name} unit over its stroke", unit, "strokes", "commands", "outputs", "lost")
 
 

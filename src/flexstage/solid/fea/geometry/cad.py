@@ -175,8 +175,8 @@ def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
     area = joint.area * MILLIMETRES**2
     nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _distance(face, origin) / np.sqrt(area), default=None)
     if nearest is None or _distance(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
-        likeliest = "" if nearest is None else f"the likeliest face there has {nearest.mass:.4g} mm^2 instead of {area:.4g}"
-        found = "no flat face there" if nearest is None else f"{likeliest}, its centre {_distance(nearest, origin):.3g} mm away"
+        best = "" if nearest is None else f"the best face in its plane has an area of {nearest.mass:.4g} mm^2 instead of {area:.4g} mm^2"
+        found = "no flat face in its plane" if nearest is None else f"{best}; its centre is {_distance(nearest, origin):.3g} mm off"
         what = f"the end face of {joint.link} does not meet {joint.body}: {found}"
         return Finding(joint.name, what, "Move the outline so that it covers the end face")
     nearest.name = joint.name

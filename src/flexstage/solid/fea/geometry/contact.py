@@ -155,7 +155,7 @@ def _end_answers(end: _End, meeting: _Meeting) -> Iterator[Answer]:
     if meeting.share < 1.0 - _SHARE:
         yield (
             f"only {100.0 * meeting.share:.3g} % of its end face is on {end.body}",
-            f"Widen the outline of {end.body} there, or move it: the whole end face must be on it",
+            f"Widen or move the outline of {end.body}: it must support the whole end face",
         )
 
 

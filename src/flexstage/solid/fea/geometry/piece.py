@@ -24,7 +24,7 @@ _DIGITS = 10
 """Digits of a crystal's tensor, relative to its largest entry: instances of a unit must be equal."""
 
 _CROSSED = 1e-9
-"""Coupling of normal and shear strains by rounding alone, over the largest entry."""
+"""Coupling of normal and shear strains by rounding alone, divided by the largest entry."""
 
 MILLIMETRES = 1e3
 """CAD units per metre."""

@@ -23,7 +23,7 @@ from flexstage.solid.fea.solver.component import Component
 SLIVER = 0.05
 """Largest size of slivers over the thickness of the thinnest piece there."""
 _OWN = 0.5
-"""Largest size of slivers over the smallest edge or width of an isolated piece."""
+"""Largest size of slivers, divided by the smallest edge or width of an isolated piece."""
 _NOTHING = 1e-7
 _TOUCHING = 1e-6
 """Largest distance between a sliver's middle and the box of its piece [m], unless the sliver is larger."""

@@ -126,7 +126,7 @@ def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELE
     except (OSError, DesignError) as error:
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
         what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be stored in {path.parent} ({why})"
-        advice = f"The result is complete, but not cached: free space there, or set {FOLDER_VARIABLE} to another folder"
+        advice = f"The result is complete, but not cached: free space in this folder, or set {FOLDER_VARIABLE} to another folder"
         notice(Finding(where, what, advice))
 
 

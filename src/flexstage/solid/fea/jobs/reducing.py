@@ -147,7 +147,7 @@ class Reduce(ComponentJob):
         sizes = {name: [1e3 * float(np.real(each)) for each in (throat.thinnest, throat.width)] for name, throat in wide.items()}
         name, (height, width) = min(sizes.items(), key=lambda each: each[1][0] / each[1][1])
         ratio = f"{name} is {height:.3g} mm thick and {width:.3g} mm wide, 1 to {width / height:.3g}"
-        more = "or make that part thicker or narrower, or use theory: flexstage analyse"
+        more = f"or make {name} thicker or narrower, or use theory: flexstage analyse"
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
     def excess(self, memory: float, seconds: float) -> Iterator[Finding]:

@@ -46,7 +46,7 @@ from flexstage.spatial.frame import Frame, identity, transport
 
 _DEPENDENT = 1e-13
 _REACH = 0.5
-"""Extent of a body's surface around the end of a part without a shape, over the smallest dimension of its solid there."""
+"""Extent of a body's surface around the end of a part without a shape, divided by the smallest dimension of its solid there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +84,8 @@ def reduce_mesh(
     """Assemble and reduce a meshed component, with progress reports.
 
     If `springs` (6 m, 6 m) connect the interfaces, the modes are computed with interfaces that are free except for the springs, instead of
-    with fixed interfaces. If a whole stage is one component, these modes are exact. The statics of such a component is exact only for
-    strokes and wrenches on the platform; other static responses are not computed, because the mesh is large.
+    with fixed interfaces. If a whole stage is one component, these modes are exact. With `springs`, static shapes of loads on other bodies
+    than the platform are not computed, because the mesh is large; such static responses are approximate.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
