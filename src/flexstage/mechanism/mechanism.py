@@ -246,8 +246,8 @@ class Mechanism(InNotebook, Description):
     """Description of a stage, for all models.
 
     The stage is a graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with
-    `gauges`. The body `ground` exists implicitly, the body `platform` is the moving part. `overrides` replace values of the shared part for
-    single links, by address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed
+    `gauges`. The body `ground` exists implicitly; the stage positions the body `platform`. `overrides` replace values of the shared part
+    for single links, by address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed
     modes.
 
     `stops` limit strokes; `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no

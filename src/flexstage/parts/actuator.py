@@ -151,7 +151,7 @@ class StrokeActuator(Actuator):
 
     @property
     def below_zero(self) -> Number:
-        """Fraction of the stroke below zero voltage: zero."""
+        """Fraction of the stroke at negative voltages: zero by default."""
         return 0.0
 
 
@@ -172,7 +172,7 @@ class ChargedActuator(StrokeActuator):
 
     @property
     def below_zero(self) -> Number:
-        """Fraction of the stroke below zero voltage; zero without a voltage range.
+        """Fraction of the stroke at negative voltages; zero without a voltage range.
 
         The fraction is negative if the voltage range begins above zero.
         """

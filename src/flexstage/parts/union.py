@@ -198,14 +198,14 @@ def _is_apart(first: Drawn, second: Drawn) -> bool:
 def _refusals(seen: Sequence[Drawn]) -> Iterator[Finding]:
     first, *others = seen
     names = " and ".join(other.name for other in others)
-    what = f"unsupported overlap with {names}: only blocks, extrusions and cylinders along one axis may overlap"
-    yield Finding(first.name, what, "Trim one of them, draw one as a hole along that axis, or specify the body's mass")
+    what = f"unsupported overlap with {names}: only blocks, extrusions and cylinders along a common axis may overlap"
+    yield Finding(first.name, what, "Trim one of these solids, draw one as a hole along the axis of the other, or specify the body's mass")
 
 
 def _mixtures(first: Drawn, second: Drawn, volume: float) -> Iterator[Finding]:
     there = f"{second.name} of {second.solid.material} by {1e9 * volume:.4g} mm^3"
     what = f"ambiguous material: {first.solid.material} overlaps {there}"
-    yield Finding(first.name, what, "Cut one of them (a block may have a hole, a cylinder a bore), or specify the body's mass")
+    yield Finding(first.name, what, "Cut one solid (a block may have a hole, a cylinder a bore), or specify the body's mass")
 
 
 def _region(group: Sequence[Drawn]) -> Moments | None:

@@ -170,7 +170,7 @@ class Assembly:
 
     If a circuit connects several force actuators, `actuators` contains the first link of the circuit. `circuits` maps every actuator's link
     to its input and sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in
-    `superelements` instead of `links`, because they join any number of bodies. Bodies that belong to another body (`of`) are not listed:
+    `superelements` instead of `links`, because they join any number of bodies. `bodies` excludes bodies that belong to another body (`of`):
     their solids belong to the owner. Solids of the ground are in `ground`.
     """
 

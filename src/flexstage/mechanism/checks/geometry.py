@@ -159,7 +159,7 @@ def _lent(where: str, body: Body, owner: Body | None) -> Iterator[Finding]:
         yield Finding(where, what, f'Remove these, or specify them for "{body.of}"')
     if owner is not None and owner.mass is not None and body.solids:
         what = f'its solids belong to "{body.of}", which has a specified mass'
-        yield Finding(where, what, f'Remove the mass: all solids then determine the mass of "{body.of}"')
+        yield Finding(where, what, f'Remove the mass: the solids of both bodies then determine the mass of "{body.of}"')
     for name, solid in body.solids.items():
         yield from _solid(f"{where}.solids.{name}", solid)
 

@@ -386,7 +386,7 @@ def _end_findings(link: _Thing, side: float, body: str, met: Sequence[_Thing], m
         yield Finding(link.name, f"it penetrates {body} by {deep}", advice)
     elif meeting.share < 1.0 - _SHARE:
         what = f"only about {100.0 * meeting.share:.2g} % of its end face lies on {body}"
-        yield Finding(link.name, what, f"Widen the outline of {body} there, or move it: it must support the whole end face")
+        yield Finding(link.name, what, f"Widen or move the outline of {body}: it must support the whole end face")
     if meeting.sound:
         yield from _side_findings(link, body, met)
 

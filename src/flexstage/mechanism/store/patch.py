@@ -79,7 +79,7 @@ def _patch_steps(text: str, steps: list[_Step]) -> str:
             _untag(document, mechanism, changed)
             _set(document, mechanism, changed, address)
         except tomlkit.exceptions.TOMLKitError as error:
-            raise refuse(address, f"the file cannot be changed there: {error}", "Rewrite the file with dump") from None
+            raise refuse(address, f"the file cannot be changed at this address: {error}", "Rewrite the file with dump") from None
     return tomlkit.dumps(document)
 
 

@@ -48,7 +48,7 @@ def _one_by_one(text: str, mechanism: Mechanism, tags: Mapping[str, str], where:
         ways = (_with_tags(text, mechanism, {address: tag}, where, beside=beside) for beside in (True, False))
         result = next((way for way in ways if way is not None), None)
         if result is None:
-            raise refuse(address, "the file's table layout does not allow a tag there", "Rewrite the file with dump")
+            raise refuse(address, "the file's table layout does not allow a tag at this address", "Rewrite the file with dump")
         text = result
     return text
 

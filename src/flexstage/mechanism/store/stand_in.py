@@ -87,7 +87,7 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, ReplacementPart]) -> list
     for key in mechanism.overrides:
         ends = [address for address in touched if f"/{key}".partition(".")[0].endswith(f"/{address.rpartition('/')[2]}")]
         if ends:
-            what = f"changes one link of part {touched[ends[0]]}, but the calibrated compliance matrix applies to all its links"
+            what = f"changes one link of part {touched[ends[0]]}, but the calibrated compliance matrix applies to all links of the part"
             results.append(Finding(f'overrides."{key}"', what, "Use a separate part for that link, or remove the override"))
     return results
 
