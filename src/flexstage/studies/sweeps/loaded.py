@@ -65,7 +65,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     advice = (
         'Add to [limits] e.g. buckling = "at least 20"'
         if least < DOUBTFUL
-        else "Measures over a path include them, e.g. stiffness.x over NAME"
+        else "Measures over a path include these loads, e.g. stiffness.x over NAME"
     )
     return (Finding("variables", what, advice),)
 

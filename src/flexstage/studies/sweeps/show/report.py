@@ -54,7 +54,7 @@ def study_head(study: Study, kind: str, said: Headline) -> Head:
 def _headline(study: Study, results: Results) -> Headline:
     """Number of designs, and of feasible ones."""
     count, failed = len(results.designs), len(results.failures)
-    text = f"{count} designs of {len(study.variables)} variables" + (f"; {failed} of them failed and have no values" if failed else "")
+    text = f"{count} designs of {len(study.variables)} variables" + (f"; failed designs, without values: {failed}" if failed else "")
     if not study.limits or not count:
         return Headline(f"{text}.")
     kept = int(np.sum(study.feasible(results.responses)))

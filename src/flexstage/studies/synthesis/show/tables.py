@@ -43,7 +43,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     if found.impossible:
         rows = [(Cell(name, Mark.STRONG), actuators, *_shortfall_cells(best)) for name, actuators, best in _excluded(found.impossible)]
         notes = [
-            "These bounds are exact. They hold for any mechanism with these actuators, or for this architecture only.",
+            'Values "at most" are rigorous upper limits. They hold for any mechanism with these actuators, or for this architecture only.',
             "A row for several actuators shows the values of the first actuator, which is the closest to the requirement.",
         ]
         columns = ["architecture", "actuators", "requirement", Column("at most"), Column("required"), "holds for", "reason"]
