@@ -32,7 +32,7 @@ def _print_rows(rows: Iterable[Row]) -> None:
 
 
 def self_test() -> Row:
-    """Compute the frequencies of the shipped stage and compare them with the values in the paper."""
+    """Compute the frequencies of the shipped stage and compare them with the values of Shin & Moon."""
     # Imported here: a missing or broken package is a row of the examination.
     from flexstage.analysis.dynamics.modes import modes
     from flexstage.cases.double_triangle import double_triangle

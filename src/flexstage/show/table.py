@@ -106,7 +106,7 @@ def text_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table | None:
-    """Make a table of names, each with one or several texts. Returns `None` without rows.
+    """Make a table of names, each with one or several texts. Returns `None` if there are no rows.
 
     >>> text_table("Sources", ["", "source"], {"steel": "data sheet"}).texts()
     [['', 'source'], ['steel', 'data sheet']]
@@ -269,7 +269,7 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
 def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table | None:
     """Make the table of a result, or of results in a sequence or by name, with the layout `TABLE` of its class.
 
-    `fields` and `title` replace the fields and title of `TABLE`. Returns `None` without rows.
+    `fields` and `title` replace the fields and title of `TABLE`. Returns `None` if there are no rows.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)

@@ -117,7 +117,7 @@ COMMANDS: tuple[Command, ...] = (
             'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
     Command("loop", _CONTROL, "Close the control loop of a stage.", f"{_CONTROLLED}.loop:loop",
             "flexstage loop stage.toml --floor VC-D --report loop.html"),
-    Command("serve", _CONTROL, "Run a virtual controller of a stage over TCP.", f"{_CONTROLLED}.serve:serve",
+    Command("serve", _CONTROL, "Serve a virtual controller of a stage over TCP.", f"{_CONTROLLED}.serve:serve",
             "flexstage serve stage.toml"),
     Command("design", _IMPROVE, "Design stages for a specification.", f"{_APPS}.design:design",
             "flexstage design spec.toml -o answers"),

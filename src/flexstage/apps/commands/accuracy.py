@@ -48,7 +48,7 @@ Commands: TypeAlias = Annotated[
         "--command",
         "AXIS=VALUE",
         "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. "
-        "Default: the required strokes; if there are none, budget uses the single-axis strokes.",
+        "Default: the required strokes; without required strokes, the command budget uses the single-axis strokes.",
     ),
 ]
 

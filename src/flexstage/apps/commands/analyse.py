@@ -49,7 +49,10 @@ def analyse(  # noqa: PLR0913 (its options)
     csv: Csv = None,
     xlsx: Xlsx = None,
     mat: Annotated[
-        Path | None, text_option("--mat", "FILE", "MATLAB file with the matrices R_a, R_s, K, M, B, C, D and the state space.")
+        Path | None,
+        text_option(
+            "--mat", "FILE", "MATLAB file with the mappings R_a and R_s, the second-order model (K, M, B, C, D) and the state-space model."
+        ),
     ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 for a missed requirement.")] = False,
     full: Full = False,

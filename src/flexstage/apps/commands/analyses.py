@@ -188,7 +188,8 @@ def modes(
 ) -> CommandResult:
     """Compute natural frequencies, mode names and shapes.
 
-    Prints platform modes and local modes, with their fractions of kinetic energy and compliance. --view writes an animation.
+    Prints platform modes and local modes. For each mode, prints the platform's fraction of kinetic energy and the mode's fraction of the
+    platform's static compliance. --view writes an animation.
 
     With --at, --load, --fixed or --temperature, the model is linearised about that operating point, with large displacements and weight.
     """

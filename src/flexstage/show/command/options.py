@@ -135,7 +135,7 @@ AmplifierValues: TypeAlias = Annotated[
     text_option(
         "--amplifier",
         "VALUE",
-        "Amplifier bandwidth (500Hz), output resistance (50ohm) or maximum current (0.2A). Default: ideal. Repeatable.",
+        "Amplifier bandwidth, output resistance or maximum current, by unit: e.g. 500Hz, 50ohm or 0.2A. Default: ideal. Repeatable.",
     ),
 ]
 

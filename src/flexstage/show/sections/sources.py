@@ -20,7 +20,7 @@ _LIMITS = {
         "Ideal model: rigid bodies, perfect hinges, and small motions about the undeformed configuration. No stiffness, loads or modes."
     ),
     Model.MAPPED: (
-        "Mapped model, as in the paper: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
+        "Mapped model of Shin & Moon: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
         "no lost motion, no local modes and no crosstalk."
     ),
     Model.LUMPED: (

@@ -49,7 +49,7 @@ def bend_of(part: Part | None) -> Bend:
 
 
 def _flexibility(part: Shaped, shares: Array) -> Array:
-    """1 / I in the middle of each interval of shares (n + 1,), over the largest: sizes are interpolated linearly between stations."""
+    """1 / I in the middle of each interval of shares (n + 1,), divided by the largest; sizes are interpolated linearly between stations."""
     places = (0.5 * (shares[1:] + shares[:-1]) - 0.5) * single(part.span)
     moment = part.section_at(places).least_inertia
     return np.min(moment) / moment
