@@ -28,7 +28,7 @@ SHOWN = tuple(name for name in CASES if name not in ALIKE)
 _PRINTED = ("telescope-mount", "mirror-mount", "leaf-guide", "resonator", "quad-suspension")
 _INTRODUCTION = """\
 This page shows every shipped stage with its key results. Use the stages as examples or as starting points. `flexstage new stage.toml --case
-NAME` writes the design file of a stage; `flexstage analyse stage.toml` prints its key results and many more.
+NAME` writes the design file of a stage; `flexstage analyse stage.toml` prints its key results and many other results.
 
 For stages with published results, the text names the source, and the page [stages of others](validation/published.md) lists the comparison.
 All other stages are typical designs with assumed values. In the built pages, you can rotate each stage and play its modes."""

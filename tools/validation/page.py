@@ -141,7 +141,7 @@ The page [disagreements](disagreements.md) explains every recorded disagreement.
 if a recorded row agrees."""
 
 _ABSENT = """\
-* The paper does not publish the mappings R_a and R_s, masses, radii, damping, and the values of its figures 11 and 12.
+* Shin & Moon do not publish the mappings R_a and R_s, masses, radii, damping, and the values of its figures 11 and 12.
 * `tests/analytic/test_loaded_vibrations.py` and `tests/laws/test_nonlinear.py` check further results at large displacements: vibrations of
   loaded beams, and invariants of any stage.
 * `tests/models` checks the three-dimensional finite elements of other stages."""
