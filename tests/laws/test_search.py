@@ -46,11 +46,22 @@ from flexstage.control.study.setup import (
 )
 from flexstage.control.study.study import loop_study
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
-from flexstage.control.tuning.find import find
+from flexstage.control.tuning.find import find, slower, unstable_places
 from flexstage.control.tuning.fit import Bounds
 from flexstage.control.tuning.laws import PI_FAMILY, RESONANT_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.control.tuning.search import Field, Joint, SearchResult, Variant, beside_one_another, field, loud_enough, search, variants
+from flexstage.control.tuning.search import (
+    Field,
+    Joint,
+    SearchResult,
+    Variant,
+    Work,
+    beside_one_another,
+    field,
+    loud_enough,
+    search,
+    variants,
+)
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.spec import Tuning, TuningSpec
 from flexstage.control.tuning.view import view
@@ -305,6 +316,50 @@ def test_a_search_looks_closer_where_a_peak_was_passed():
             place = np.searchsorted(frequencies, 301.0 * (1.0 + variant.offset))
             assert frequencies[place] / frequencies[place - 1] - 1.0 < most
             assert most < 0.01 or frequencies[place] / frequencies[place - 1] - 1.0 > 0.02
+
+
+def test_gains_too_high_for_shifted_modes_are_lowered_and_the_growing_motion_is_named():
+    plant = integral_loop().plant
+    spec = specified()
+    shifts = tuple(dict.fromkeys((0.0, *(each.offset for each in variants(spec)), -0.01, 0.01)))
+    within = field(view(plant, platform_loops(plant.coordinates), spec.spread, tuple(sorted(shifts, key=abs))), spec)
+    first = search(within, PI_FAMILY)
+    assert first is not None
+
+    def growth(controller: Decentralised, offset: float) -> tuple[float, float]:
+        one = moved(plant, offset)
+        poles = loop(one, replace(controller.system(plant.hardware.step), step=one.hardware.step)).system.poles.astype(complex)
+        rates = np.log(poles[np.abs(poles) > 0.0]) / one.hardware.step
+        fastest = rates[np.argmax(rates.real)]
+        return float(fastest.real), abs(float(fastest.imag)) / (2.0 * np.pi)
+
+    low = Decentralised(within.seen.loops, first.laws, notches=first.notches)
+    for factor in np.geomspace(1.0, 50.0, 60):
+        high = replace(
+            low, laws=tuple(replace(law, proportional=factor * law.proportional, integral=factor * law.integral) for law in low.laws)
+        )
+        grown = {offset: growth(high, offset) for offset in (-0.1, -0.05, 0.05, 0.1)}
+        if max(rate for rate, _ in grown.values()) > 0.0:
+            break
+    expected = sorted(frequency for rate, frequency in grown.values() if rate > 0.0)  # a slower clock, so the modes stay where they are
+    assert expected
+    np.testing.assert_allclose(sorted(unstable_places(within, high)), expected, rtol=1e-6)
+    calmer = slower(within, [high])
+    assert calmer is not None
+    lowered = calmer.tuning.controller
+    assert isinstance(lowered, Decentralised)
+    ratio = lowered.laws[0].integral / high.laws[0].integral
+    assert lowered.laws[0].proportional / high.laws[0].proportional == pytest.approx(ratio)
+    assert 0.5 <= ratio < 1.0
+    assert all(growth(lowered, offset)[0] < 0.0 for offset in shifts)
+
+
+def test_work_is_allowed_to_a_search_that_has_none_left():
+    work = Work(1000.0)
+    work.count(1500)
+    assert work.affordable(9, 50) == 0
+    work.allow(0.1)
+    assert work.affordable(9, 50) == 2
 
 
 @pytest.mark.full

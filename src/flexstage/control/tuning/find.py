@@ -186,14 +186,14 @@ def _sought(within: Field, seek: Callable[[Field], SearchResult | None]) -> _Can
             controller = _controller(tried, found)
             judged = _judge(within, controller)
             if np.isfinite(missed := excess(tried, found)) and (kept := _candidate(within, controller, judged, missed)) is not None:
-                slower = _slower(within, rejected)
-                return kept if slower is None or slower.unmet or slower.merit <= kept.merit else slower
+                calmer = slower(within, rejected)
+                return kept if calmer is None or calmer.unmet or calmer.merit <= kept.merit else calmer
             rejected.append(controller)
             within.work.allow(_MORE)
-            begun, places = found, (*places, judged.frequency / (1.0 + judged.offset), *_unstable_places(within, controller))
+            begun, places = found, (*places, judged.frequency / (1.0 + judged.offset), *unstable_places(within, controller))
         if begun is None:
             break
-    return _slower(within, rejected)
+    return slower(within, rejected)
 
 
 def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
@@ -201,8 +201,8 @@ def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
     return max((each for each in candidates if each is not None), key=lambda each: (not each.unmet, each.worth), default=None)
 
 
-def _slower(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
-    """The best of rejected controllers with their gains multiplied by the largest factor that makes one of them acceptable."""
+def slower(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
+    """Return the best of rejected controllers with their gains multiplied by the largest factor that makes one of them acceptable."""
     distinct = {(each.laws, each.notches): each for each in rejected}.values()
     for factor in _FACTORS:
         slowed = [replace(each, laws=tuple(_scaled(law, factor) for law in each.laws)) for each in distinct]
@@ -317,8 +317,8 @@ def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
     return replace(judged, growth=max(judged.growth, *far)) if far else judged
 
 
-def _unstable_places(within: Field, controller: Decentralised) -> Iterator[float]:
-    """Frequencies [Hz] of the fastest growing motion with each mode shift beyond the spread, at the modes of the model."""
+def unstable_places(within: Field, controller: Decentralised) -> Iterator[float]:
+    """Yield the frequency [Hz], divided by 1 + shift, of the fastest growing motion with each mode shift beyond the spread."""
     seen, system = within.seen, controller.system(within.seen.step)
     for offset, plant in zip(seen.offsets, seen.systems, strict=True):
         poles = closed_system(plant, system).poles.astype(complex)
