@@ -8,7 +8,7 @@ import scipy
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
-from flexstage.control.damping.damped_plant import as_felt, close_damping, describe_damping
+from flexstage.control.damping.damped_plant import close_damping, describe_damping, with_series_stiffness
 from flexstage.control.damping.force_feedback import ForceFeedback, most_damping
 from flexstage.control.damping.legs import legs, pair_zeros
 from flexstage.control.damping.sampled import sample_legs
@@ -64,7 +64,7 @@ def damped_by(stage, law, **given):
     model = lumped(stage)
     found = legs(stage, model)
     bare = plant(model, ideal(stage), sampling_chain(stage, **given), links=tuple(each.sensed for each in found))
-    felt = as_felt(bare, found)
+    felt = with_series_stiffness(bare, found)
     closed = close_damping(bare, law, felt)
     return model, felt, bare, closed
 

@@ -12,7 +12,7 @@ from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.linear_statics.deflection import deflection
 from flexstage.analysis.linear_statics.drift import _Thermal  # pyright: ignore[reportPrivateUsage]
 from flexstage.analysis.linear_statics.statics import statics
-from flexstage.analysis.loaded.load_effect import FELT, LoadEffect, felt_links, load_effect
+from flexstage.analysis.loaded.load_effect import SIGNIFICANT, LoadEffect, load_effect, loaded_lumped_model
 from flexstage.analysis.loaded.stability import Stability, prestress, stability
 from flexstage.beams.compliance import stiffness
 from flexstage.cases.parallelogram import parallelogram
@@ -95,8 +95,8 @@ def test_what_is_not_felt_changes_no_number():
     found, drawn = fs.analyse(stage), fs.lumped(stage)
     assert found.loaded is not None
     assert found.loaded.model is None
-    assert abs(found.loaded.change) < FELT
-    assert found.felt is found.linear
+    assert abs(found.loaded.change) < SIGNIFICANT
+    assert found.under_load is found.linear
     assert found.modes is not None
     assert np.array_equal(found.modes.frequencies, fs.modes(drawn).frequencies)
     assert found.loaded.text.startswith("Weight, payloads and forces change no stiffness by more than 0.048 %")
@@ -216,7 +216,7 @@ def long_travel() -> fs.Mechanism:
 
 def test_drift_of_a_loaded_stage_is_that_of_one_that_is_warmer(long_travel: fs.Mechanism):
     warm, cold = (fs.equilibrium(fs.nonlinear(long_travel, temperature=step)) for step in (1.0, -1.0))
-    found = fs.drift(long_travel, felt_links(long_travel)).motion
+    found = fs.drift(long_travel, loaded_lumped_model(long_travel)).motion
     for place in ("platform", "sample"):
         rate = 0.5 * (warm.displacement(place) - cold.displacement(place))
         drifted = [found.at(f"{place}.{axis}", "uniform") for axis in "xyz"]
@@ -233,7 +233,7 @@ def test_drift_of_a_loaded_stage_is_what_its_flexures_do_to_a_small_load(long_tr
         if isinstance(link.part, fs.Leaf):
             misfit = transport(np.array([0.5 * float(np.asarray(link.part.length)), 0.0, 0.0])) @ thermal.misfit(link)
             moved -= (ahead.wrench(name) - back.wrench(name)) / (2.0 * step) @ misfit
-    found = fs.drift(long_travel, felt_links(long_travel)).of().values[1]
+    found = fs.drift(long_travel, loaded_lumped_model(long_travel)).of().values[1]
     assert found == pytest.approx(moved, rel=1e-5, abs=1e-14)
     drawn = fs.drift(long_travel, fs.lumped(long_travel)).of().values[1]
     assert abs(found[2] / drawn[2]) > 10.0  # the load seeks its plumb line
@@ -266,10 +266,10 @@ def test_what_bends_flexures_is_felt_like_a_load():
         found = load_effect(replace(stage, parts=bent, materials={"steel": steel}))
         assert found is not None
         assert "initially curved flexures" in found.text
-        assert (found.model is not None) == (abs(found.change) >= FELT)
+        assert (found.model is not None) == (abs(found.change) >= SIGNIFICANT)
         changes.append(abs(found.change))
     assert changes[1] / changes[0] == pytest.approx(9.0, rel=0.05)
-    assert changes[0] < FELT < changes[1]
+    assert changes[0] < SIGNIFICANT < changes[1]
 
 
 def test_a_loop_is_that_of_the_loaded_stage():

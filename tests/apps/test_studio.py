@@ -19,7 +19,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 import flexstage as fs
 from flexstage.analysis.assessment.judge import bench_of, judge
-from flexstage.analysis.complete import felt
+from flexstage.analysis.complete import loaded_model
 from flexstage.analysis.dynamics.modes import modes
 from flexstage.analysis.dynamics.response import response
 from flexstage.analysis.dynamics.solid_modes import FeaModes
@@ -126,7 +126,7 @@ def test_figures_of_a_stage_whose_weight_is_felt_are_those_of_its_analysis():
     """Two upright leaves under 2.5 kg: 2.27 Hz loaded, 3.18 Hz as drawn."""
     text = dumps(upright(2.5))
     stage = loads(text)
-    model = felt(stage, Model.LUMPED)
+    model = loaded_model(stage, Model.LUMPED)
     told, found, heard = figures(text, "", text, 1, ((), (), None, None)), modes(model), response(model, ("platform",), ("ground.z",))
     assert told.loading == load_effect(stage).text != ""
     assert told.modes[0].frequency == pytest.approx(2.26569, rel=1e-4)

@@ -164,7 +164,7 @@ class StageResults:
         return load_effect(self.mechanism)
 
     @cached_property
-    def felt(self) -> StageResults:
+    def under_load(self) -> StageResults:
         """Results of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else this object."""
         if self.loaded is None or self.loaded.model is None:
             return self

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 else:
     load_cases = LazyModule("flexstage.analysis.loaded.load_cases")
 
-__all__ = ["Analysis", "Model", "analyse", "felt", "platform_modes", "read", "required_command"]
+__all__ = ["Analysis", "Model", "analyse", "loaded_model", "platform_modes", "read", "required_command"]
 
 _RIGID = "the ideal model has no elasticity"
 _UNLUMPED = "only the lumped model computes this result"
@@ -65,9 +65,10 @@ class Analysis(InNotebook):
     `units` (each distinct isolated unit). The `verdicts` on requirements always come from the lumped model, whatever the model of the other
     results.
 
-    `loaded` is the effect of the permanent load. If the permanent load is significant, statics, modes, responses (`felt`), lost motion,
-    drift, error budget and their verdicts are for the loaded stage. All other results and the linear model `linear` belong to the nominal
-    stage. `second_order` is the small-displacement error over the required strokes; without required strokes, over the available strokes.
+    `loaded` is the effect of the permanent load. If the permanent load is significant, statics, modes, responses (`under_load`), lost
+    motion, drift, error budget and their verdicts are for the loaded stage. All other results and the linear model `linear` belong to the
+    nominal stage. `second_order` is the small-displacement error over the required strokes; without required strokes, over the available
+    strokes.
     `ends` contains the critical load factors at both ends of each load path, computed up to the required factor (None without load paths).
     The error budget is for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
 
@@ -103,16 +104,16 @@ class Analysis(InNotebook):
     drive_force: DriveForce | None = None
 
     @property
-    def felt(self) -> LinearModel | None:
+    def under_load(self) -> LinearModel | None:
         """Model of statics, modes and responses: `linear`, or the model linearised about the loaded state."""
         return self.linear if self.loaded is None or self.loaded.model is None else self.loaded.model
 
 
-def felt(mechanism: Mechanism, model: Model) -> LinearModel | None:
+def loaded_model(mechanism: Mechanism, model: Model) -> LinearModel | None:
     """Return the linear model of a stage. If the permanent load is significant, the lumped model is linearised about the loaded state.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> "geometric" in felt(double_triangle(), Model.LUMPED).stiffness
+    >>> "geometric" in loaded_model(double_triangle(), Model.LUMPED).stiffness
     False
     """
     known = read(mechanism, model)

@@ -59,8 +59,8 @@ class NoiseBudget(InNotebook):
         s^2) (Widrow & Kollar, Quantization Noise, 2008). For s = 1/2, the correlation is 0.7 %.
         """
         counts = np.any(self.squares > 0.0, axis=0)
-        felt = {each.channel for each, some in zip(self.sources, counts, strict=True) if some and each.kind is Kind.ROUNDING}
-        return tuple(name for name, change in zip(self.gauges, self.changes, strict=True) if change < _HALF and name in felt)
+        rounded = {each.channel for each, some in zip(self.sources, counts, strict=True) if some and each.kind is Kind.ROUNDING}
+        return tuple(name for name, change in zip(self.gauges, self.changes, strict=True) if change < _HALF and name in rounded)
 
     @property
     def rms(self) -> Annotated[Array, Axes("output_names")]:

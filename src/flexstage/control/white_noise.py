@@ -162,6 +162,6 @@ def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...
     ()
     """
     given = closed.plant
-    felt = [*(f"gap.{name}" for name in given.gauges), *(name for name in outputs if name in given.system.output_names)]
+    observed = [*(f"gap.{name}" for name in given.gauges), *(name for name in outputs if name in given.system.output_names)]
     noisy = [name for name in given.actuators if name in given.hardware.amplifiers and given.hardware.amplifiers[name].noise_density]
-    return tuple(name for name in noisy if not np.any(select(given.system, [name], felt).D))
+    return tuple(name for name in noisy if not np.any(select(given.system, [name], observed).D))

@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 import scipy
 
-from flexstage.analysis.complete import felt, platform_modes
+from flexstage.analysis.complete import loaded_model, platform_modes
 from flexstage.analysis.dynamics.modes import Modes, clusters
 from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.dynamics.solid_modes import FeaModes
@@ -200,7 +200,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         ...
     flexstage.base.finding.DesignError: y: unknown output; ...
     """
-    linear = felt(mechanism, model)
+    linear = loaded_model(mechanism, model)
     require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Use the model lumped or mapped")])
     assert linear is not None  # noqa: S101  refused above
     theory = platform_modes(mechanism, linear)

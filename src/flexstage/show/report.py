@@ -61,7 +61,7 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
 
 def _turning(analysis: Analysis) -> StageData:
     """The stage for its viewer, with the motions of its model: for the ideal one only those of the platform."""
-    weighed = analysis.felt if analysis.felt is not analysis.linear else None
+    weighed = analysis.under_load if analysis.under_load is not analysis.linear else None
     data = stage_data(analysis.mechanism, model=analysis.linear, weighed=weighed, kinematics=analysis.kinematics, found=analysis.modes)
     return data if analysis.linear is not None else replace(data, motions=tuple(each for each in data.motions if each.group is Group.AXIS))
 

@@ -13,7 +13,7 @@ from flexstage.analysis.dynamics.random_response import Spectrum, random_respons
 from flexstage.analysis.dynamics.response import default_frequencies
 from flexstage.analysis.linear_statics.drift import Drift, drift
 from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
-from flexstage.analysis.loaded.load_effect import felt_links
+from flexstage.analysis.loaded.load_effect import loaded_lumped_model
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.analysis.workspace.map_error import map_error_at
 from flexstage.base.arguments import check_arguments
@@ -77,7 +77,7 @@ def budget(
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
         raise refuse(at, f"a point of {body}, not of the platform", "Use a point of the platform")
-    kinematics, model = ideal(mechanism), felt_links(mechanism)
+    kinematics, model = ideal(mechanism), loaded_lumped_model(mechanism)
     forced = bool(kinematics.thrusts) and not kinematics.actuated
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))
     temperature = float(warmed is not None) if temperature is None else temperature

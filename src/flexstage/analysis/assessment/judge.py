@@ -102,16 +102,16 @@ def value_or_reason(bench: StageResults, asked: Measure) -> Array | str:
 
 
 def _verdict(bench: StageResults, line: Requirement) -> Verdict:
-    felt = line.kind.softening > 0.0 or line.kind.felt
+    load_dependent = line.kind.softening > 0.0 or line.kind.load_dependent
     try:
-        drawn = Verdict(line, line.kind.value(bench.felt if felt else bench, line))
+        drawn = Verdict(line, line.kind.value(bench.under_load if load_dependent else bench, line))
     except LowerBoundError as error:
         least = Verdict(line, np.asarray(error.bound))
         decided = bool(least.passed) is (line.sense is Sense.AT_LEAST)
         return least if decided else Verdict(line, None, str(error))
     except DesignError as error:
         return Verdict(line, None, str(error))
-    weighed = felt and bench.felt is not bench
+    weighed = load_dependent and bench.under_load is not bench
     doubt = ("" if weighed else _loaded_doubt(bench, drawn)) or _large_doubt(bench, drawn)
     return Verdict(line, None, doubt) if doubt else drawn
 

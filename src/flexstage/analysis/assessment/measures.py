@@ -85,9 +85,9 @@ class MeasureKind:
     The first sentence of the docstring of `work` defines the measure. `pointed`: a point may be specified. `extreme`: `work` returns pieces
     (..., m), one for every actuator, hinge or stack; the least or largest piece is the measure, and an optimiser uses all pieces.
     `softening`: at worst, a permanent load with critical load factor n multiplies the measure by (1 - 1/n)^softening. `over_strokes`: the
-    measure is the worst over the full range of strokes. `felt`: the measure depends on lost motion, drift or deflection, which the
-    permanent load changes. `analytic`: complex-step differentiation is valid. `along`: the measure is evaluated along a path of the design,
-    or at a point of the path.
+    measure is the worst over the full range of strokes. `load_dependent`: the measure depends on lost motion, drift or deflection, which
+    the permanent load changes. `analytic`: complex-step differentiation is valid. `along`: the measure is evaluated along a path of the
+    design, or at a point of the path.
     """
 
     form: str
@@ -98,7 +98,7 @@ class MeasureKind:
     extreme: Extreme | None = None
     softening: float = 0.0
     over_strokes: bool = False
-    felt: bool = False
+    load_dependent: bool = False
     analytic: bool = True
     along: bool = False
 
@@ -139,7 +139,7 @@ class Measure:
     path: str = ""
 
 
-@partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST, felt=True)
+@partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST, load_dependent=True)
 def stroke(bench: StageResults, asked: Measure) -> Array:
     """Symmetric stroke along one axis, with lost motion corrected.
 
@@ -158,7 +158,7 @@ def stroke(bench: StageResults, asked: Measure) -> Array:
     return np.where(np.concatenate([able, able], axis=-1), both, np.inf)
 
 
-@partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, felt=True)
+@partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, load_dependent=True)
 def corner(bench: StageResults, _: Measure) -> Array:
     """Largest ratio of required to available actuator stroke or stop gap, with all required strokes at once."""
     return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
@@ -252,7 +252,7 @@ def _compliance(bench: StageResults, asked: Measure) -> Array:
     return statics(bench.model, load_point=asked.point, read_point=asked.point).compliance.values
 
 
-@partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0, felt=True)
+@partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0, load_dependent=True)
 def deflection(bench: StageResults, asked: Measure) -> Array:
     """Motion under gravity and specified forces, with strokes fixed."""
     causes = bench.deflection(asked.point).by_cause
@@ -330,19 +330,19 @@ def _stated(coils: dict[str, Coil], field: str) -> Array:
     return stack(list(values.values()))
 
 
-@partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST, felt=True)
+@partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST, load_dependent=True)
 def loss(bench: StageResults, _: Measure) -> Array:
     """Largest relative lost motion of an actuator."""
     return magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
 
 
-@partial(MeasureKind, "loss.<actuator>", RATIO, felt=True)
+@partial(MeasureKind, "loss.<actuator>", RATIO, load_dependent=True)
 def own_loss(bench: StageResults, asked: Measure) -> Array:
     """Relative lost motion of the actuator."""
     return loss.pieces(bench, asked)[..., bench.lost.loss.rows.index(asked.name)]
 
 
-@partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST, felt=True)
+@partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST, load_dependent=True)
 def crosstalk(bench: StageResults, _: Measure) -> Array:
     """Largest apparent stroke of one actuator due to the stroke of another."""
     values = bench.lost.loss.values
@@ -356,7 +356,7 @@ def map_error(bench: StageResults, asked: Measure) -> Array:
     return bench.map_error[..., COMPONENTS.index(asked.name)]
 
 
-@partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True, felt=True)
+@partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True, load_dependent=True)
 def drift(bench: StageResults, asked: Measure) -> Array:
     """Motion per kelvin of uniform temperature change, with strokes fixed; the ground expands too."""
     return magnitude(bench.drift.motion.at(f"{asked.point}.{asked.name}", "uniform"))

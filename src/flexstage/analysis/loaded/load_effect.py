@@ -36,7 +36,7 @@ else:
 
 _BENT = "initially curved flexures"
 _WARM = "thermal expansion"
-FELT = 0.01
+SIGNIFICANT = 0.01
 """Relative change of a stiffness or frequency due to permanent load, above which results are computed for the loaded stage."""
 _MODES = 6
 
@@ -121,7 +121,7 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     bound, bent = _bound(result), bool(causes)
     *others, last = ("weight", "payloads", "forces", *causes)
     cause = f"{', '.join(others)} and {last}"
-    if bound < FELT and not bent:
+    if bound < SIGNIFICANT and not bent:
         return LoadEffect(bound, "", "", None)
     still = standing(mechanism)
     if is_large(mechanism, still):
@@ -129,19 +129,19 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
             bound, "", f"the model has too many degrees of freedom for a loaded state ({len(still.coordinates):,})", None, cause=cause
         )
     near = _compare(still, prestress(mechanism, still))
-    if abs(near.change) < FELT and not bent:
+    if abs(near.change) < SIGNIFICANT and not bent:
         return near
     try:
-        return replace(_felt(mechanism), cause=cause)
+        return replace(_nonlinear_effect(mechanism), cause=cause)
     except DesignError as error:
         return LoadEffect(bound, "", "; ".join(str(each).rstrip(".") for each in error.findings), None, cause=cause)
 
 
-def felt_links(mechanism: Mechanism) -> LinearModel:
+def loaded_lumped_model(mechanism: Mechanism) -> LinearModel:
     """Return the lumped model. If the permanent load is significant, return `LoadEffect.links`, linearised about the loaded state.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> "geometric" in felt_links(parallelogram()).stiffness
+    >>> "geometric" in loaded_lumped_model(parallelogram()).stiffness
     False
     """
     drawn = standing(mechanism)
@@ -169,7 +169,7 @@ def _straight(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, parts=parts, temperatures={}) if changed else mechanism
 
 
-def _felt(mechanism: Mechanism) -> LoadEffect:
+def _nonlinear_effect(mechanism: Mechanism) -> LoadEffect:
     state = equilibrium.equilibrium(nonlinear.nonlinear(mechanism))
     unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
     equilibrium.require_equilibrium(state)
@@ -185,7 +185,7 @@ def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:
     changes = {name: after[name] / before[name] - 1.0 for name in before if name in after and before[name] > 0.0}
     largest = max(changes, key=lambda name: round(abs(changes[name]), 9))
     change = changes[largest]
-    return LoadEffect(change, largest, "", about if abs(change) >= FELT else None)
+    return LoadEffect(change, largest, "", about if abs(change) >= SIGNIFICANT else None)
 
 
 def _figures(model: LinearModel) -> Iterator[tuple[str, float]]:

@@ -211,8 +211,8 @@ def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
     count = len(model.coordinates)
     across = added[:count, count:]
     inner = np.linalg.solve(own[count:, count:] + added[count:, count:], across.T)
-    felt = Contribution(np.eye(count), added[:count, :count] - across @ inner)
-    return replace(model, stiffness={**model.stiffness, "geometric": felt})
+    geometric = Contribution(np.eye(count), added[:count, :count] - across @ inner)
+    return replace(model, stiffness={**model.stiffness, "geometric": geometric})
 
 
 def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:

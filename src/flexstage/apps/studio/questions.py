@@ -235,7 +235,7 @@ def _stress(known: StageResults, name: str) -> tuple[float | None, float | None,
 
 def _shares(known: StageResults, name: str) -> dict[str, float]:
     """Its share of each actuator's lost motion."""
-    found = {actuator: float(np.real(each.budget_by_link.get(name, 0.0))) for actuator, each in known.felt.lost.actuators.items()}
+    found = {actuator: float(np.real(each.budget_by_link.get(name, 0.0))) for actuator, each in known.under_load.lost.actuators.items()}
     return {actuator: share if abs(share) > NOISE else 0.0 for actuator, share in found.items()}
 
 
@@ -307,7 +307,7 @@ def _bearing(text: str, file: str) -> Bearing:
 
 def _inputs(known: StageResults) -> Matrix:
     """Inputs per motion of the platform, corrected for elasticity."""
-    return matrix(known.force_workspace("platform").per_motion if known.forced else known.felt.lost.correction)
+    return matrix(known.force_workspace("platform").per_motion if known.forced else known.under_load.lost.correction)
 
 
 def _ideal(known: StageResults) -> Matrix:

@@ -96,9 +96,9 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
     Old values are those of the text `stored` on disk.
     """
     timer, known, attempt = Timer(), bench(text, file), Attempts()
-    stiff = attempt.of("stiffness", lambda: statics(known.felt.model))
-    lost = attempt.of("loss", lambda: known.felt.lost)
-    found = attempt.of("modes", lambda: known.felt.modes)
+    stiff = attempt.of("stiffness", lambda: statics(known.under_load.model))
+    lost = attempt.of("loss", lambda: known.under_load.lost)
+    found = attempt.of("modes", lambda: known.under_load.modes)
     response = attempt.of("response", lambda: _response(known, choice))
     missing = {**attempt.missing, **({} if stiff is None else stiff.reasons)}
     return Figures(
@@ -107,7 +107,7 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
         None if stiff is None else matrix(stiff.stiffness),
         None if stiff is None else matrix(stiff.compliance),
         () if lost is None else tuple(_losses(lost)),
-        () if found is None else tuple(_modes(known.felt.model, found)),
+        () if found is None else tuple(_modes(known.under_load.model, found)),
         None if response is None else floats(response.frequencies),
         () if response is None else tuple(_curves(response)),
         "" if found is None else _loading(known),
@@ -175,8 +175,8 @@ def drawn(text: str, file: str) -> StageData:
     from flexstage.show.viewer.data import stage_data
 
     known = bench(text, file)
-    model, kinematics, felt = (Attempts().of(each, partial(getattr, known, each)) for each in ("model", "kinematics", "felt"))
-    weighed, found = (None if felt is None else Attempts().of(each, partial(getattr, felt, each)) for each in ("model", "modes"))
+    model, kinematics, loaded = (Attempts().of(each, partial(getattr, known, each)) for each in ("model", "kinematics", "under_load"))
+    weighed, found = (None if loaded is None else Attempts().of(each, partial(getattr, loaded, each)) for each in ("model", "modes"))
     stands = _still(text, file)
     return stage_data(known.mechanism, model=model, weighed=weighed, kinematics=kinematics, found=found, text=text, still=stands)
 
@@ -190,7 +190,7 @@ def matrix(found: Labelled) -> Matrix:
 
 def _loading(known: StageResults) -> str:
     """Note on figures of the loaded stage; else empty."""
-    return known.loaded.text if known.felt is not known and known.loaded is not None else ""
+    return known.loaded.text if known.under_load is not known and known.loaded is not None else ""
 
 
 @SESSION.keep(8)
@@ -220,7 +220,7 @@ def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress
 
 def _corrected(known: StageResults) -> SingleAxis:
     """Strokes along single axes, lost motion corrected by command."""
-    lost = known.felt.lost
+    lost = known.under_load.lost
     return single_axis(*with_stops(known.mechanism, known.kinematics, lost.correction, known.limits), provenance=lost.provenance)
 
 
@@ -236,7 +236,7 @@ def _held(known: StageResults) -> Iterator[Stroke]:
 
 def _response(known: StageResults, choice: Choice) -> Response:
     inputs, outputs, low, high = choice
-    model = known.felt.model
+    model = known.under_load.model
     if low is not None and high is not None and not 0.0 < low < high < np.sqrt(np.finfo(float).max):
         raise refuse("response", f"{low:g} Hz to {high:g} Hz is not a band", "Use a low frequency above zero and a higher one")
     grid = None if low is None or high is None else np.geomspace(low, high, _POINTS)
@@ -318,7 +318,11 @@ def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
 
 
 def _key_results(known: StageResults) -> tuple[tuple[str, Any], ...]:
-    return ("modes", lambda: known.felt.modes), ("stiffness", lambda: statics(known.felt.model)), ("loss", lambda: known.felt.lost)
+    return (
+        ("modes", lambda: known.under_load.modes),
+        ("stiffness", lambda: statics(known.under_load.model)),
+        ("loss", lambda: known.under_load.lost),
+    )
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:

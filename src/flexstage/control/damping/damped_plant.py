@@ -124,7 +124,7 @@ def around_legs(
     return connect([rename(given.system, entries), *inner], links, (*given.system.inputs, *heard), outputs)
 
 
-def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
+def with_series_stiffness(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
     """Return the legs with the effective stiffness of stack and hinges in series: the tension per stroke far above the plant's modes."""
     forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
     slow = np.array([not name.startswith("amplifier.") for name in given.states])
@@ -161,11 +161,11 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
     The loop has as many of these modes as coordinates. If no gain reaches `wanted`, returns the gain of maximum damping. A gain at which
     the inner loops are unstable is reduced. Raises `DesignError` if the inner loops are unstable even at the lowest gain tried.
     """
-    felt = felt_most(given)
-    scale = 2.0 * np.pi * float(np.median(given.frequencies[felt]))
+    dominant = dominant_modes(given)
+    scale = 2.0 * np.pi * float(np.median(given.frequencies[dominant]))
     gains = scale * np.geomspace(_FIRST, _LAST, _GAINS)
     poles = follow_poles(given, law, legs, gains)
-    ratios = np.min(_ratios(poles[:, felt]), axis=1)
+    ratios = np.min(_ratios(poles[:, dominant]), axis=1)
     steady = [close_damping(given, replace(law, gain=float(gain)), legs).system.growth < 0.0 for gain in (gains[0],)]
     if not steady[0]:
         raise refuse(
@@ -180,7 +180,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
     return chosen
 
 
-def felt_most(given: Plant) -> Array:
+def dominant_modes(given: Plant) -> Array:
     """Return the indices of the modes with the largest residues in a plant's loop, one per coordinate."""
     return np.argsort(-resonances(given))[: len(given.coordinates.names)]
 
@@ -224,7 +224,7 @@ def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tupl
         softest_at=lines[place],
         law=law,
         sensed=legs,
-        reached=min(modes[place].damped_ratio for place in felt_most(given)),
+        reached=min(modes[place].damped_ratio for place in dominant_modes(given)),
     )
 
 

@@ -10,12 +10,12 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.control.damping.damped_plant import (
     ActiveDamping,
-    as_felt,
     close_damping,
     describe_damping,
-    felt_most,
+    dominant_modes,
     gain_for,
     with_damped_modes,
+    with_series_stiffness,
 )
 from flexstage.control.damping.force_feedback import ForceFeedback
 from flexstage.control.damping.legs import Leg, Pairs, pair_zeros
@@ -38,18 +38,18 @@ def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], 
     require(_rate_findings(asked.rate, plant.hardware.rate))
     pairs = pair_zeros(model, legs)
     sensed = tuple(replace(each, noise=asked.noise) for each in legs) if asked.noise is not None else legs
-    felt = as_felt(reduce_modes(plant, np.zeros(len(plant.frequencies), bool)), sensed)
+    legs = with_series_stiffness(reduce_modes(plant, np.zeros(len(plant.frequencies), bool)), sensed)
     lags = [each for each in (asked.lag, *(leg.lag for leg in sensed)) if each is not None]
     corner = asked.corner if asked.corner is not None else _CORNER * _lowest_zero(plant, pairs)
     law = ForceFeedback(asked.gain or 1.0, corner, asked.order, min(lags, default=np.inf), _delay(asked))
     if asked.gain is None:
-        law = replace(law, gain=gain_for(plant, law, felt, asked.ratio or _USUAL))
-    closed, both = close_damping(plant, law, felt), close_damping(whole, law, felt)
+        law = replace(law, gain=gain_for(plant, law, legs, asked.ratio or _USUAL))
+    closed, both = close_damping(plant, law, legs), close_damping(whole, law, legs)
     growth = max(closed.system.growth, both.system.growth)
     if growth >= 0.0:
         what = f"force feedback with a gain of {law.gain:.4g} 1/s is unstable (growth rate {growth:.3g} 1/s)"
         raise refuse("damping", what, "Specify less damping, or use faster amplifiers, a higher lag corner and a shorter delay")
-    found = replace(describe_damping(plant, closed, law, felt, pairs), rate=asked.rate)
+    found = replace(describe_damping(plant, closed, law, legs, pairs), rate=asked.rate)
     return with_damped_modes(closed, found), both, found
 
 
@@ -71,5 +71,5 @@ def _rate_findings(inner: float | None, outer: float | None) -> Iterator[Finding
 
 def _lowest_zero(plant: Plant, pairs: Pairs) -> float:
     """Lowest transmission zero [Hz] without the legs' stiffness, of the modes with the largest residues."""
-    lowest = (pairs.others[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[felt_most(plant)])
+    lowest = (pairs.others[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[dominant_modes(plant)])
     return float(min(lowest))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexstage.analysis.complete import felt, platform_modes
+from flexstage.analysis.complete import loaded_model, platform_modes
 from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.loaded.load_effect import LoadEffect, load_effect
@@ -110,7 +110,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
     if not kinematics.coordinates or not drives:
         what = f"the platform has {len(kinematics.coordinates)} ideal motions and {drives} actuators"
         raise refuse("loop", f"{what}: no motion to control", "Release a motion in the design, and add an actuator for it")
-    model = solid.model if solid is not None else there.linear if there is not None else felt(mechanism, setup.model)
+    model = solid.model if solid is not None else there.linear if there is not None else loaded_model(mechanism, setup.model)
     if model is None:
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Use model lumped or mapped")
     require(_force_findings(kinematics, setup))

@@ -364,12 +364,12 @@ def _strokes(seen: View, control: LQG, estimates: Array, frequencies: Array) -> 
     """
     count = len(seen.loops.names)
     states, points, width = estimates.shape
-    felt = (control.regulator @ estimates.reshape(states, -1).view(float)).view(complex).reshape(-1, points, width)
-    fed = np.moveaxis(felt, 1, 0)
+    responses = (control.regulator @ estimates.reshape(states, -1).view(float)).view(complex).reshape(-1, points, width)
+    fed = np.moveaxis(responses, 1, 0)
     turning = 2j * np.pi * frequencies
     sums = (step := seen.step or 0.0) / np.expm1(turning * step)
     entered = fed[..., :count] + (control.integral @ np.linalg.inv(seen.loops.sense)) * sums[:, None, None]
-    return np.linalg.solve(np.eye(len(felt)) + fed[..., count:], entered)
+    return np.linalg.solve(np.eye(len(responses)) + fed[..., count:], entered)
 
 
 def _balance_bandwidths(seen: View, design: _Designer, frequency: float, wanted: Array, first: Array) -> tuple[LQG | None, Array]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from flexstage.analysis.complete import felt
+from flexstage.analysis.complete import loaded_model
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.experiment.comparison import Compared
@@ -47,7 +47,7 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
     """Write the comparison of model, finite elements and test as an HTML page, followed by the test's data."""
-    data = _with_measured(stage_data(mechanism, model=felt(mechanism, found.model)), seen, shapes)
+    data = _with_measured(stage_data(mechanism, model=loaded_model(mechanism, found.model)), seen, shapes)
     head = [stage_section(data), compare_section(found), pair_section(found, data)]
     sections = [*head, *_sections(seen, _measured(seen, shapes, data))]
     return _page("Theory and experiment", _compared_headline(found), mechanism, seen, sections, data=data)

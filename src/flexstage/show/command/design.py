@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
-from flexstage.analysis.complete import felt, read
+from flexstage.analysis.complete import loaded_model, read
 from flexstage.analysis.loaded.load_effect import load_effect
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.units.expression import parse_expression
@@ -107,7 +107,7 @@ def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -
 
     If `loaded`, the model includes the effect of a significant permanent load.
     """
-    linear = felt(mechanism, model) if loaded else read(mechanism, model)
+    linear = loaded_model(mechanism, model) if loaded else read(mechanism, model)
     if linear is None:
         raise refuse("--model ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
     return linear

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.analysis.loaded.load_effect import FELT
+from flexstage.analysis.loaded.load_effect import SIGNIFICANT
 from flexstage.analysis.loaded.stability import DOUBTFUL, stability
 from flexstage.analysis.loaded.standing import load_factors
 from flexstage.base.finding import DesignError, Finding, require
@@ -57,7 +57,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     ()
     """
     least, values = _least(study)
-    if least >= 1.0 / FELT:
+    if least >= 1.0 / SIGNIFICANT:
         return ()
     where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
     effect = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable and fail"
