@@ -69,6 +69,9 @@ def test_values_are_those_of_the_judge():
     point = Values(study, measures)(shares[None])[0]
     design = study.mechanism_for(np.array([each.at(share) for each, share in zip(study.variables, shares, strict=True)]))
     np.testing.assert_allclose(point.values, np.array(measure_all(design, measures), dtype=float), rtol=1e-9)
+    twice = Values(study, (*measures[:2], measures[0]))(shares[None])[0]  # an objective that is a limit, too
+    assert twice.values.tolist() == [*point.values[:2], point.values[0]]
+    assert twice.gradient.tolist() == point.gradient[[0, 1, 0]].tolist()
 
 
 @pytest.mark.parametrize("seed", range(20 if FULL else 5))
@@ -197,6 +200,15 @@ starts = 1
     (limit,) = middle.binding
     assert limit.price > 0.0
     assert (upper.value(upper.point) - lower.value(lower.point)) / 4.0 == pytest.approx(limit.price, rel=2e-3)
+
+
+def test_of_several_contradictions_as_many_are_found_as_are_asked_for(tmp_path):
+    limits = '[limits]\n"stiffness.z" = "at most 50 N/um"\n"frequency.platform.1" = "at least 40 Hz"\nheight = "at most 1 mm"\n'
+    study, wanted = study_of(tmp_path, POST, post_variables() + limits + '[optimise]\nmaximise = "f1"\nstarts = 2')
+    every = optimise(study, wanted).contradictions
+    assert len(every) > 1
+    (first,) = optimise(study, wanted, contradictory=1).contradictions
+    assert (first.limits, first.violation) == (every[0].limits, every[0].violation)
 
 
 def test_contradicting_limits_are_named_and_nothing_else(tmp_path):
