@@ -119,7 +119,7 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
         return None
     causes = [*([_BENT] if any(map(_is_bent, mechanism.parts.values())) else []), *([_WARM] if _is_warm(mechanism) else [])]
     bound, bent = _bound(result), bool(causes)
-    *others, last = ("weight", "payloads", "forces", *causes)
+    *others, last = "weight", "payloads", "forces", *causes
     cause = f"{', '.join(others)} and {last}"
     if bound < SIGNIFICANT and not bent:
         return LoadEffect(bound, "", "", None)

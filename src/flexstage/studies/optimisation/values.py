@@ -117,11 +117,11 @@ class Values:
 
     def __call__(self, shares: Array) -> list[Point | str]:
         """Compute points with derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
-        return self._evaluate(np.asarray(shares, dtype=float), slopes=True)
+        return self._evaluate(shares, slopes=True)
 
     def evaluate(self, shares: Array) -> list[Point | str]:
         """Compute measures without derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
-        return self._evaluate(np.asarray(shares, dtype=float), slopes=False)
+        return self._evaluate(shares, slopes=False)
 
     def _evaluate(self, shares: Array, *, slopes: bool) -> list[Point | str]:
         """Evaluate all at once; after a failure, halves, until the failing designs are isolated."""
@@ -139,7 +139,7 @@ class Values:
         return self._bare.mechanism_for(np.stack(columns, axis=-1))
 
     def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
-        designs, variables = shares.shape
+        designs, variables = np.shape(shares)
         each = variables if slopes else 1
         rows = np.repeat(shares, each, axis=0)
         if slopes:
@@ -149,18 +149,15 @@ class Values:
             require_valid(replace(stepped, formulas=Table({})))  # formulas have just been computed
             bench = StageResults(stepped, self._command)
             modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
-            columns: dict[tuple[str, str], Sequence[Scalars | NumberedFrequency]] = {}  # an objective may be a limit, too
-            for measure in self.measures:
-                if (measure.key, measure.point) in columns:
-                    continue
+            columns: dict[tuple[str, str], Sequence[Scalars | NumberedFrequency]] = {}
+            for key, measure in {(one.key, one.point): one for one in self.measures}.items():  # an objective may be a limit, too
                 if measure.kind in _SPECTRAL:
-                    found: Sequence[Scalars | NumberedFrequency] = [self._nth_frequency(own, measure) for own in modes]
+                    columns[key] = [self._nth_frequency(own, measure) for own in modes]
                 elif not measure.kind.analytic:
-                    found = self._central_differences(measure, shares, slopes=slopes)
+                    columns[key] = self._central_differences(measure, shares, slopes=slopes)
                 else:
-                    found = _scalars(measure.kind.pieces(bench, measure), _extreme(measure), (designs, each), slopes=slopes)
-                columns[measure.key, measure.point] = found
-        return [Point(shares[design], tuple(columns[each.key, each.point][design] for each in self.measures)) for design in range(designs)]
+                    columns[key] = _scalars(measure.kind.pieces(bench, measure), _extreme(measure), (designs, each), slopes=slopes)
+        return [Point(shares[design], tuple(columns[one.key, one.point][design] for one in self.measures)) for design in range(designs)]
 
     def _nth_frequency(self, own: tuple[Spectrum, ...], measure: Measure) -> NumberedFrequency:
         platform = measure.kind is platform_frequency

@@ -120,8 +120,7 @@ def design(  # noqa: PLR0913 (its options)
         for pair, faults in screened
         if faults
     )
-    failed = [found[pair.name] for pair in open_pairs if pair.name in found]
-    failed = sorted((each for each in failed if isinstance(each, FailedPair)), key=_violation)
+    failed = sorted((each for pair in open_pairs if isinstance(each := found.get(pair.name), FailedPair)), key=_violation)
     return Answers(specification, tuple(_ranked(specification, found)), tuple(failed), tuple(excluded), interrupted)
 
 
@@ -253,8 +252,8 @@ def _relaxed(
     store: _Store, pairs: Sequence[CandidatePair], found: Mapping[str, Answer | FailedPair], progress: Progress | None
 ) -> dict[str, Answer | FailedPair]:
     """The failed pairs of least violation with relaxed values."""
-    failed = [(each, pair) for pair in pairs if isinstance(each := found.get(pair.name), FailedPair)]
-    failed = sorted(failed, key=lambda each: _violation(each[0]))[:_RELAXED]
+    every = ((each, pair) for pair in pairs if isinstance(each := found.get(pair.name), FailedPair))
+    failed = sorted(every, key=lambda each: _violation(each[0]))[:_RELAXED]
     done = dict[str, Answer | FailedPair]()
     for number, (each, pair) in enumerate(failed):
         said = partial(_notify(progress, f"{pair.name}, relaxed"), number / len(failed))

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import islice
 
 from flexstage.base.number import Array
 from flexstage.studies.optimisation.result import Contradiction
@@ -26,22 +25,16 @@ def contradictions(
     resulting set is irreducible: if any one of its limits is removed, the others can be met. The search is repeated for the limits that are
     in no set yet.
     """
-    return tuple(islice(_irreducible_sets(setting, list(starts), told), most))
-
-
-def _irreducible_sets(setting: Setting, starts: list[Array], report: CountReport | None) -> Iterator[Contradiction]:
-    left = tuple(range(len(setting.kept)))
-    while True:
-        found = _least_violation(setting, left, starts, report)
-        if found is None or found.violation <= SPARE:
-            return
-        begins = [found.point.shares, starts[0]]
-        held = tuple(number for number, weight in zip(left, found.weights, strict=True) if weight > _COUNTS)
-        alone = _least_violation(setting, held, begins[:1], report)
-        chosen, ended = (held, alone) if alone is not None and alone.violation > SPARE else (left, found)
-        chosen, ended = _irreducible_set(setting, chosen, ended, begins, report)
-        yield Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point)
+    found, left = list[Contradiction](), tuple(range(len(setting.kept)))
+    while len(found) < most and (least := _least_violation(setting, left, starts, told)) is not None and least.violation > SPARE:
+        begins = [least.point.shares, starts[0]]
+        held = tuple(number for number, weight in zip(left, least.weights, strict=True) if weight > _COUNTS)
+        alone = _least_violation(setting, held, begins[:1], told)
+        known = (held, alone) if alone is not None and alone.violation > SPARE else (left, least)
+        chosen, ended = _irreducible_set(setting, *known, begins, told)
+        found.append(Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point))
         left = tuple(number for number in left if number not in chosen)
+    return tuple(found)
 
 
 @dataclass(frozen=True, eq=False)

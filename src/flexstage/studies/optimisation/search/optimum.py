@@ -52,8 +52,8 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     traces = [Trace() for _ in begins]
     interrupted = _search_all(set_up, begins, traces, counted)
     point = best_of(problem, traces)
-    broken, against, near = interrupted, (), None
-    if not interrupted:
+    against, near, broken = (), None, interrupted
+    if not broken:
         against, near, interrupted = _conclude(set_up, point, traces, counted, contradictory)
     starts = tuple(_start(set_up, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
     return Optimum(
