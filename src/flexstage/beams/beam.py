@@ -17,8 +17,8 @@ from flexstage.parts.section import Section
 class Beam:
     """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), for (x, y, z, rx, ry, rz).
 
-    The flexibilities are 1/(E A), k/(G A) for y and for z, twist rate per torque, 1/(E I_y), 1/(E I_z). The inertias are rho A for x, y and
-    z, rho I_p, rho I_y, rho I_z.
+    The flexibilities are 1/(E A), k/(G A) with the shear factor k for y and for z, the twist rate per torque, 1/(E I_y) and 1/(E I_z). The
+    inertias are rho A for x, y and z, rho I_p, rho I_y, rho I_z.
     """
 
     points: Stations
@@ -30,7 +30,7 @@ class Beam:
     def diagonal(self) -> Array:
         """Compute the diagonal (..., 6) of the compliance about the centre.
 
-        C_x, C_rx, C_ry, C_rz are integrals of the flexibility; C_y = integral of f_y + x^2 f_rz, C_z = integral of f_z + x^2 f_ry.
+        C_x, C_rx, C_ry, C_rz are integrals of the flexibility f; C_y = integral of f_y + x^2 f_rz, C_z = integral of f_z + x^2 f_ry.
         """
         weight = 2.0 * self.points.rule.weights * self.points.rate
         plain = (weight[..., None, :] @ self.flexibility)[..., 0, :]

@@ -71,7 +71,7 @@ class PartLaw:
     - `concentration`: the stress concentration factor of the part's notches; if this factor is missing or `None`, the stress is unknown;
     - `ranges`: ratios of dimensions with the intervals that were compared with finite elements;
     - `family`: the name of the fitted function for the model error;
-    - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations from -1 to 1 over the half length.
+    - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations from -1 to 1, as fractions of the half length.
     """
 
     beam: Callable[[Any, Any], Beam] | None = None

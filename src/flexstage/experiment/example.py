@@ -16,7 +16,7 @@ POLE = 10.0 * (-0.02 + 1j * np.sqrt(1.0 - 0.02**2))
 def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
     """Generate a record of a white-noise input and the stage's motion; every call returns the same samples.
 
-    `noise` is the rms of the measurement noise relative to the motion's rms.
+    `noise` is the ratio of the rms of the measurement noise to the rms of the motion.
 
     >>> one_mode_record().duration
     64.0

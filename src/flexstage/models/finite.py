@@ -132,8 +132,9 @@ class _Relative:
 def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
     """Compute the platform pose for strokes (..., n) [m] in the order of `kinematics.actuators`, from the nominal position.
 
-    The poses of all bodies are computed by Newton's method. Leaves and rods with end deflection w and slope t shorten by 0.6 w^2/L - 0.1 w
-    t + L t^2/15, as in the beam constraint model (Awtar, Slocum & Sevincer 2007). All other links are modelled with fixed pivots.
+    The poses of all bodies are computed by Newton's method. Leaves and rods of length L with end deflection w and slope t shorten by 0.6
+    w^2/L - 0.1 w t + L t^2/15, as in the beam constraint model (Awtar, Slocum & Sevincer 2007). All other links are modelled with fixed
+    pivots.
 
     Raises `DesignError` if the strokes do not determine the platform's motion or the iteration does not converge.
 

@@ -51,10 +51,11 @@ def budget(
     means 1 K if drift is known. If expansion coefficients are missing and the change is 0 or `None`, drift is omitted, and `reasons` has a
     note.
 
-    All these contributions are largest absolute values:
+    All these contributions are largest absolute values. xi are the displacements, R_a is the ideal mapping to strokes a, J = dx/da and V
+    are the ideal Jacobian and motions, T is the gain of the elastic model, and Lambda = I - R_a V^+ T is the lost motion:
 
     - lost motion: J diag(Lambda) R_a xi;
-    - crosstalk: J (Lambda - diag) R_a xi, plus the motion outside the ideal motions;
+    - crosstalk: J (Lambda - diag(Lambda)) R_a xi, plus the motion outside the ideal motions;
     - with lost motion corrected by the gains a = (R_a V^+ T)^-1 R_a xi: only the residual T a - V xi, listed as crosstalk;
     - linear map: finite kinematics minus linear kinematics at the corners;
     - gauge noise: `coverage` standard deviations;

@@ -61,7 +61,9 @@ class ErrorBudget(Result):
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:
-    """Return the columns of R_a for the coordinates of a command. Raises `DesignError` for unknown coordinates.
+    """Return the columns of R_a, strokes per platform motion, for the coordinates of a command.
+
+    Raises `DesignError` for unknown coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -80,7 +82,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
 def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, depth: int = 0) -> Array:
     """Compute the strokes a = R_a xi, shape (2^c, ..., n) [m], at the corners of a box of displacements xi along c coordinates.
 
-    `depth` is the least number of batch axes between the corners and the strokes.
+    R_a is the ideal mapping from platform motion to strokes. `depth` is the least number of batch axes between the corners and the strokes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

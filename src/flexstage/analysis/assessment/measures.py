@@ -580,9 +580,9 @@ def _least_factor(bench: StageResults, load_cases: Iterable[cases.LoadCase]) -> 
 def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     """Lowest natural frequency with the required motions of the platform fixed.
 
-    N spans the null space of the n constraint rows of these motions; the constrained stage has the matrices N'KN and N'MN. By interlacing,
-    this frequency is at most the frequency of mode n + 1 of the free stage. The Rayleigh quotient of the real mode shape gives exact
-    complex-step derivatives.
+    N spans the null space of the n constraint rows of these motions. With the stiffness K and the mass M of the free stage, the constrained
+    stage has the matrices N'KN and N'MN. By interlacing, this frequency is at most the frequency of mode n + 1 of the free stage. The
+    Rayleigh quotient of the real mode shape gives exact complex-step derivatives.
     """
     axes = [axis for axis, value in bench.command.items() if value]
     if not axes:

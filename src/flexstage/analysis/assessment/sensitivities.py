@@ -43,9 +43,10 @@ class Sensitivities(Result):
 
     `frequency` (P, k) is in Hz per SI unit of the parameter; for the modes of a cluster, it is the derivative of the mean frequency.
     `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi,
-    converted to frequency slopes. These slopes are valid for changes of a single parameter and cannot be added. `gain` and `loss` (P, n)
-    are the derivatives of each actuator's gain and lost motion; n = 0 if the strokes do not determine the platform's motion. `missing` has
-    the reasons for absent results.
+    converted to frequency slopes; Phi are the shapes of the modes, lambda is the mean of their squared angular frequencies, dK and dM are
+    the derivatives of stiffness and mass. These slopes are valid for changes of a single parameter and cannot be added. `gain` and `loss`
+    (P, n) are the derivatives of each actuator's gain and lost motion; n = 0 if the strokes do not determine the platform's motion.
+    `missing` has the reasons for absent results.
     """
 
     parameters: tuple[str, ...]
@@ -229,7 +230,7 @@ def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> 
 
 
 def project(contributions: Contributions, shapes: Array) -> Array:
-    """Compute Phi^T dA Phi (p, k, k) for shapes (n, k) from the contributions of a stepped matrix.
+    """Compute Phi^T dA Phi (p, k, k) for mode shapes Phi (n, k) and the derivative dA of a matrix with complex steps, by contributions.
 
     >>> from flexstage.models.linear.model import Contribution
     >>> one = np.ones((1, 1))

@@ -38,9 +38,10 @@ class Edge:
 class DiskMargin(InNotebook):
     """Disk margin alpha of all loops, which have simultaneous factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2); s is the `skew`.
 
-    Stability is guaranteed for all |d_i| < `guaranteed`; the proof covers every frequency if `covered`, else only sampled frequencies. Some
-    d_i of magnitude `reached` >= `guaranteed` make the loop marginally stable at `frequency` [Hz]. `loops` names the varied loops. Each
-    loop tolerates any gain factor from `gain_low` to `gain_high`, or any phase up to `phase` [rad], independently of the other loops.
+    The complex numbers d_i are the variations of the loops. Stability is guaranteed for all |d_i| < `guaranteed`; the proof covers every
+    frequency if `covered`, else only sampled frequencies. Some d_i of magnitude `reached` >= `guaranteed` make the loop marginally stable
+    at `frequency` [Hz]. `loops` names the varied loops. Each loop tolerates any gain factor from `gain_low` to `gain_high`, or any phase up
+    to `phase` [rad], independently of the other loops.
     """
 
     TABLE: ClassVar[Layout] = Layout("Disk margin, all loops at once", "guaranteed gain_low gain_high phase")
@@ -65,14 +66,17 @@ class DiskMargin(InNotebook):
 
     @property
     def phase(self) -> Annotated[float, ANGLE, INNER, Heading("phase margin", digits=3)]:
-        """Guaranteed phase variation [rad] of every loop, of either sign: cos phi = (1 + g_low g_high)/(g_low + g_high)."""
+        """Guaranteed phase variation phi [rad] of every loop, of either sign.
+
+        With the gain limits g_low and g_high, cos phi = (1 + g_low g_high)/(g_low + g_high).
+        """
         low, high = self.gain_low, self.gain_high
         cosine = low if np.isinf(high) else (1.0 + low * high) / (low + high)
         return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
 def disk_margin(own: System, skew: float = 0.0) -> Edge:
-    """Compute the disk margin alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L).
+    """Compute the disk margin alpha = 1/||S + (skew - 1)/2|| of a single loop L from its sensitivity S = 1/(1 + L).
 
     >>> from flexstage.control.example import integral_loop
     >>> whole = sensitivity(open_at(integral_loop(), LoopBreak.POSE))
@@ -86,10 +90,12 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
 def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
     """Compute the disk margin of all loops at once. The factors are applied at the poses, at the commands, or at both if `cut` is None.
 
-    The margin is alpha = 1/sup mu(S + (skew - 1)/2), where mu is the structured singular value for a complex factor in every loop. An upper
-    bound of mu is the minimum of sigma(D M D^-1) over diagonal D, a lower bound the maximum of rho(U M) over phases U. The upper bound is
-    proved for all frequencies: for one D, a Hamiltonian matrix gives the intervals in which sigma is below a level, 0.1 % above the highest
-    value found. Further matrices D are computed until such intervals cover all frequencies. Raises `DesignError` for an unstable loop.
+    The margin is alpha = 1/sup mu(M) over all frequencies for M = S + (skew - 1)/2, where S is the sensitivity and mu the structured
+    singular value for a complex factor in every loop. An upper bound of mu is the minimum over diagonal matrices D of sigma(D M D^-1), the
+    largest singular value. A lower bound is the maximum over diagonal matrices U of phase factors of rho(U M), the spectral radius. The
+    upper bound is proved for all frequencies: for one D, a Hamiltonian matrix gives the intervals in which sigma is below a level, 0.1 %
+    above the highest value found. Further matrices D are computed until such intervals cover all frequencies. Raises `DesignError` for an
+    unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()

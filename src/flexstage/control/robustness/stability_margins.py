@@ -35,8 +35,8 @@ class ChannelMargins:
     """Stability margins of one loop, with the other loops closed.
 
     The loop is stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit). The loop is also stable for
-    phases up to `phase` [rad] of either sign, and for delays up to `delay` [s] (factors e^{-j omega tau}). `disk` is alpha of the balanced
-    disk margin: gain and phase may change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
+    phases up to `phase` [rad] of either sign, and for delays up to `delay` [s] (factors e^{-j omega tau} of a delay tau). `disk` is alpha
+    of the balanced disk margin: gain and phase may change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -80,9 +80,10 @@ class Margins(InNotebook):
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
     """Compute margins of one loop at a time, with the other loops closed; `found` are the `curves` at the cut if already known.
 
-    Gain limits are at frequencies at which S_ii = 1/(1 + L_i) is real and below 0 or above 1 (L_i is negative). Phase and delay limits are
-    at frequencies at which the real part of S_ii is 1/2 (|L_i| = 1). All limits are exact to rounding error. The disk margin is alpha_i =
-    1/||S_ii - 1/2|| (Seiler, Packard, Gahinet, IEEE Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
+    Gain limits are at frequencies at which the sensitivity S_ii = 1/(1 + L_i) of the open loop L_i is real and below 0 or above 1 (L_i is
+    negative). Phase and delay limits are at frequencies at which the real part of S_ii is 1/2 (|L_i| = 1). All limits are exact to rounding
+    error. The disk margin is alpha_i = 1/||S_ii - 1/2||, with the largest magnitude over all frequencies (Seiler, Packard, Gahinet, IEEE
+    Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = margins(integral_loop(), LoopBreak.POSE).of("x")
@@ -186,8 +187,9 @@ def _shifted_peak(closed: Loop, offset: float) -> float:
 class Bandwidths(InNotebook):
     """Bandwidths [Hz] (n,) by coordinate: the lowest frequencies at which magnitudes cross a limit (NaN: none).
 
-    At `tracking`, the true motion falls 3 dB below its reference. At `complementary`, T_ii falls 3 dB below 1. At `rejection`, |S_ii| rises
-    through 1: above it, the loop amplifies disturbances. At `half_rejection`, |S_ii| rises through -3 dB.
+    At `tracking`, the true motion falls 3 dB below its reference. At `complementary`, the complementary sensitivity |T_ii| falls 3 dB below
+    1. At `rejection`, the sensitivity |S_ii| rises through 1: above it, the loop amplifies disturbances. At `half_rejection`, |S_ii| rises
+    through -3 dB.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -52,9 +52,10 @@ class Segments(CheckedFields):
 class Spectra:
     """One-sided spectral densities at `frequencies` (f,) in Hz: `xx` (f, m, m), `yx` (f, p, m) and `yy` (f, p, p).
 
-    `yx` is E[Y X^H]: entry (i, j) is output i times the conjugate of input j. `xx` is E[X X^H], and `yy` is E[Y Y^H]. The paper's G_ij =
-    E[X_i* Y_j] (equation 29) is yx[j, i]. The unit of an entry is the product of the units of its two channels, per Hz. `averages` is the
-    number of segments; `independent` is the equivalent number of segments without overlap.
+    X and Y are the transforms of the inputs and outputs, E is the mean over segments. `yx` is E[Y X^H]: entry (i, j) is output i times the
+    conjugate of input j. `xx` is E[X X^H], and `yy` is E[Y Y^H]. The paper's G_ij = E[X_i* Y_j] (equation 29) is yx[j, i]. The unit of an
+    entry is the product of the units of its two channels, per Hz. `averages` is the number of segments; `independent` is the equivalent
+    number of segments without overlap.
     """
 
     frequencies: Array

@@ -26,8 +26,8 @@ BLOCK = 12_000_000
 class Lines:
     """Fourier transform of one block of a record at its `frequencies` (k,) in Hz: `drive` (k, n) and `outputs` (k, p).
 
-    The transform is scaled so that white noise has the same variance at every frequency as in time. The columns of `drive` are the inputs
-    and a transient; `columns` (n,) are their indices among the columns of all blocks.
+    The transform is scaled so that the mean square of white noise is the same at every frequency as in time. The columns of `drive` are the
+    inputs and a transient; `columns` (n,) are their indices among the columns of all blocks.
     """
 
     frequencies: Array
@@ -40,9 +40,9 @@ class Lines:
 class Cells:
     """Sums over frequency cells from `low` to `high` (c,) in Hz, with the block number (c,) and the `count` of lines (c,) of each cell.
 
-    Z = P_a(x) U_i is the product of the Legendre polynomials P_a, a = 0..7, and the drive U_i of the block. The sums are `own` (c, 8, n, 8,
-    n) = Z^H Z, `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. The `width` columns include the drives of all blocks;
-    `columns[block]` are the columns of one block.
+    The columns of Z are the products P_a(x) U_i of a Legendre polynomial P_a, a = 0..7, and a drive U_i of the block; x is from -1 to 1 in
+    the cell. Y are the outputs. The sums are `own` (c, 8, n, 8, n) = Z^H Z, `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y.
+    The `width` columns include the drives of all blocks; `columns[block]` are the columns of one block.
     """
 
     low: Array
@@ -76,11 +76,11 @@ class Cells:
 
 
 def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
-    """Compute Fourier transforms of a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), after subtraction of the mean.
+    """Compute Fourier transforms of a record's blocks, Y(f_k) = N^-1/2 sum over n of y_n exp(-2 pi j k n/N).
 
-    The record is divided into at least `least` blocks, or into as many blocks as memory requires. `inputs` are the column indices of the
-    record's inputs in the drive. The transient of the first block has the column index `first`, the transient of the next block `first` +
-    1, and so on.
+    y_n are the N samples of a channel in a block, minus their mean. The record is divided into `least` blocks, or into more blocks if
+    memory requires them. `inputs` are the column indices of the record's inputs in the drive. The transient of the first block has the
+    column index `first`, the transient of the next block `first` + 1, and so on.
 
     >>> from flexstage.experiment.records.record import Channel, Role, in_memory
     >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 8.0, np.eye(8)[:, :2])

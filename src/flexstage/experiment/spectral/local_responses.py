@@ -35,12 +35,13 @@ class LocalResponses:
 def local_responses(records: Sequence[Record], found: Identified) -> LocalResponses:
     """Estimate the stage's frequency responses from records by the local polynomial method, without leakage and with little smearing.
 
-    At the frequency lines of a whole block, Y(f) = H(f) U(f) + T(f) + V(f) with noise V. In a window of lines, H and the transient T are
-    modelled as polynomials of second degree (Pintelon & Schoukens, System Identification, 2nd ed., 2012, chapter 7). A window has at least
-    twice as many lines as coefficients. The half-width of a window is about a third of the distance to the nearest pole of `found`, but at
-    most eight times the minimum half-width. Blocks with a large residual have a small weight. Frequency lines at which an input has less
-    than 1e-4 of the input's median power are omitted. As in `identify`, tones are removed from the records first. The minimum window has 3
-    (m + 1) lines to each side. A mode that is narrower than this window is smeared; the smearing counts as noise.
+    At the frequency lines of a whole block, the outputs are Y(f) = H(f) U(f) + T(f) + V(f), with responses H, inputs U, transient T and
+    noise V. In a window of lines, H and T are modelled as polynomials of second degree (Pintelon & Schoukens, System Identification, 2nd
+    ed., 2012, chapter 7). A window has at least twice as many lines as coefficients. The half-width of a window is about a third of the
+    distance to the nearest pole of `found`, but at most eight times the minimum half-width. Blocks with a large residual have a small
+    weight. Frequency lines at which an input has less than 1e-4 of the input's median power are omitted. As in `identify`, tones are
+    removed from the records first. For m inputs, the minimum window has 3 (m + 1) lines to each side. A mode that is narrower than this
+    window is smeared; the smearing counts as noise.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

@@ -17,8 +17,9 @@ _DEPENDENT, _NOTHING = 1e-9, 1e-15
 def h1(spectra: Spectra) -> Responses:
     """Estimate H1 = G_yx G_xx^-1, the least-squares estimate for noise at the outputs (Bendat & Piersol, chapter 7).
 
-    H_ij is output i over input j. Inputs may be correlated. The result contains the ordinary coherence of every entry. Raises
-    `DesignError` for linearly dependent inputs, because no estimate can separate their effects.
+    G_yx are the cross spectra of outputs y and inputs x, G_xx the spectra of the inputs. H_ij is the ratio of output i to input j. Inputs
+    may be correlated. The result contains the ordinary coherence of every entry. Raises `DesignError` for linearly dependent inputs,
+    because no estimate can separate their effects.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> h1(example_spectra()).values[3].round(9).real.tolist()
@@ -35,7 +36,8 @@ def h1(spectra: Spectra) -> Responses:
 def h2(spectra: Spectra) -> Responses:
     """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; with more outputs than inputs, the inverse is a least-squares inverse.
 
-    H2 has more variance than H1, and noise at the outputs causes an upward bias. Raises `DesignError` for fewer outputs than inputs.
+    G_yy are the spectra of the outputs y, G_xy the cross spectra with the inputs x. H2 has more variance than H1, and noise at the outputs
+    causes an upward bias. Raises `DesignError` for fewer outputs than inputs.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> h2(example_spectra()).values[3].round(9).real.tolist()
@@ -51,7 +53,8 @@ def h2(spectra: Spectra) -> Responses:
 def spectral_ratio(spectra: Spectra) -> Responses:
     """Compute the spectral ratio T_ij = G_ij / G_ii of Shin & Moon (equation 29), arranged as output over input.
 
-    The ratio equals H1 for a single input or uncorrelated inputs. For correlated inputs, the ratio is not a transfer function.
+    G_ij is the cross spectrum of input i and output j, G_ii the power spectrum of input i. The ratio equals H1 for a single input or
+    uncorrelated inputs. For correlated inputs, the ratio is not a transfer function.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> spectral_ratio(example_spectra()).values[3].round(9).real.tolist()
@@ -61,7 +64,7 @@ def spectral_ratio(spectra: Spectra) -> Responses:
 
 
 def ordinary_coherence(spectra: Spectra) -> Array:
-    """Compute the ordinary coherence |G_yx|^2 / (G_xx G_yy) of every output with every input, (f, p, m), between 0 and 1.
+    """Compute the ordinary coherence |G_yx|^2 / (G_xx G_yy), shape (f, p, m), of every output y with every input x, between 0 and 1.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> ordinary_coherence(example_spectra())[3].round(9).tolist()
@@ -74,8 +77,8 @@ def ordinary_coherence(spectra: Spectra) -> Array:
 def multiple_coherence(spectra: Spectra) -> Array:
     """Compute the multiple coherence (f, p), the fraction of every output's power that all inputs explain (Bendat & Piersol, chapter 7).
 
-    The coherence is H1 G_xx H1^H / G_yy. If an output is only noise, its estimated coherence is not zero, but about the number of inputs
-    divided by the number of independent averages.
+    The coherence is H1 G_xx H1^H / G_yy, with the spectra G_xx of the inputs and the spectrum G_yy of the output. If an output is only
+    noise, its estimated coherence is not zero, but about the number of inputs divided by the number of independent averages.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> multiple_coherence(example_spectra())[3].round(9).tolist()

@@ -39,7 +39,8 @@ LESS = "Reduce the load, or compute the buckling mode with flexstage buckle"
 class State(InNotebook):
     """Static equilibria of a stage, for load cases of any shape (...).
 
-    `status` is the outcome of each solution after `iterations`, with a `residual` relative to lengths and stiffnesses.
+    `status` is the outcome of each solution after `iterations`. The `residual` is the largest remaining error: gaps divided by flexure
+    lengths, or forces divided by stiffnesses.
 
     A case that did not converge is NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` explains each failure.
 

@@ -27,8 +27,8 @@ class FlexureState:
 
     Vectors in space are `lever` (h) from the first body's reference point to the end, `arm` (a_j) from the second body's reference point to
     the end, and `onset` (a_i) from the first body's reference point to the start. `weight` (l, b, 3) is the weight per length, divided by E
-    I / L^3, in the start frames (absent without gravity). `gap` (l, b, 6) is the gap, translation and rotation, between the end and the
-    second body.
+    I / L^3 (bending stiffness E I, flexure length L), in the start frames (absent without gravity). `gap` (l, b, 6) is the gap, translation
+    and rotation, between the end and the second body.
 
     `wrench` (l, b, 6) is the wrench that the second body exerts on the flexure's end, after the flexure's own unknowns are solved.
     """
@@ -138,7 +138,10 @@ def flexure_state(group: Flexures, pose: Pose, number: int, loads: Loads) -> Fle
 
 
 def end_motion(law: FlexureLaw, bent: FlexureState) -> Array:
-    """Compute T (l, b, 6, 12): relative end motion in the start frame per motion of both bodies (docs/nonlinear.md, 17)."""
+    """Compute the matrix T (l, b, 6, 12) from both bodies' motions to the end's motion relative to the start (docs/nonlinear.md, 17).
+
+    The relative motion is in the start frame, with the translation divided by the flexure length.
+    """
     back = _transpose(bent.frame)
     none, eye = np.zeros_like(back), np.broadcast_to(np.eye(3), back.shape)
     place = back @ np.concatenate([-eye, cross_matrix(bent.lever), eye, -cross_matrix(bent.arm)], axis=-1)
@@ -328,7 +331,7 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[FlexureState, ...], step: 
 
 
 def end_displacement(model: Nonlinear, bent: tuple[FlexureState, ...], step: Array) -> Array:
-    """Return the largest relative motion (b,) of flexure ends in a step (b, n): translations over flexure length, rotations in radians."""
+    """Return the largest relative motion (b,) of flexure ends in a step (b, n): translations divided by flexure length, and rotations."""
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((len(step), 6))], axis=1).reshape(len(step), -1, 6)
     largest = [np.zeros(len(step))]
     for group, each in zip(model.flexures, bent, strict=True):

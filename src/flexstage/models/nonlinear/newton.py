@@ -268,14 +268,14 @@ def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, 
 
 
 def motion(model: Nonlinear, step: Array, length: float) -> Array:
-    """Return the largest motion (b,) in a step (b, n): translations over a length, rotations in radians."""
+    """Return the largest motion (b,) in a step (b, n): translations divided by `length`, and rotations in radians."""
     moved = step[:, : model.freedoms].reshape(len(step), -1, 6)
     over = np.array([length] * 3 + [1.0] * 3)
     return np.max(np.abs(moved) / over, axis=(1, 2))
 
 
 def lack(model: Nonlinear, system: System) -> Array:
-    """Return the largest residual (b,): end gaps of flexures, forces on their amplitudes over stiffness, and residuals of locked DOFs."""
+    """Return the largest residual (b,): end gaps of flexures, forces on amplitudes divided by a stiffness, and residuals of locked DOFs."""
     largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
         stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]

@@ -65,7 +65,8 @@ class Nonlinear(InNotebook):
     """Nonlinear model of a stage; see `nonlinear`.
 
     `bodies` are the names of the n bodies in order; the ground has the number n. `reference` (n + 1, 3) are the nominal reference points.
-    Loads act at `places`: first the wrench inputs, then the specified forces `stated` (d, 3), then the `masses` (d,).
+    Loads act at d `places`: first the wrench inputs, then the specified forces, then the weights of masses. `stated` (d, 3) are the
+    specified forces and `masses` (d,) the masses at these places (zero at the other places).
 
     `growth` (n + 1,) is the thermal expansion factor of the bodies.
     """
@@ -97,7 +98,7 @@ class Nonlinear(InNotebook):
 
     @cached_property
     def reach(self) -> float:
-        """Length scale of translation steps [m]: `size` or the largest arm, because bodies on long arms move far under a rotation."""
+        """Length scale of translation steps [m]: the larger of `size` and the longest arm, because a rotation moves long arms far."""
         groups = (*self.flexures, self.hinges)
         arms = [np.max(np.linalg.norm(each, axis=-1), initial=0.0) for group in groups for each in (group.arm_first, group.arm_second)]
         return float(max(self.size, *arms))

@@ -31,8 +31,9 @@ class Status(IntEnum):
 class SolverOptions(CheckedFields):
     """Options of the equilibrium solver.
 
-    An iteration ends after `iterations`, or earlier if the step is below `step` and the residuals are below `gap`. A step contains lengths
-    over the flexure length, radians and amplitudes.
+    An iteration ends after `iterations` steps, or earlier if the size of a step is below `step` and the residuals are below `gap`. The size
+    of a step is the largest of its translations divided by the longest flexure length, its rotations in radians, and its changes of flexure
+    amplitudes.
 
     `limit` is the largest permitted step; translations are divided by the stage's `reach`. Failed cases are solved with load steps, down to
     2^-`halvings` of the load, then by arc length with at most `arcs` steps. With `past`, the path also passes limit points: the load may

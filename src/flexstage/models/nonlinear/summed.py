@@ -102,9 +102,10 @@ def _solved(matrix: Any, right: Array) -> Array:
 
 
 def negative_pivots(matrix: Any, freedoms: int) -> int:
-    """Count the negative eigenvalues of the symmetric form of [K, C^T; C, 0] by Sylvester's law of inertia. K has `freedoms` rows.
+    """Count the negative eigenvalues of the symmetric form of [K, C^T; C, 0] by Sylvester's law of inertia.
 
-    The count is the number of negative pivots of K plus the number of negative eigenvalues of - C K^-1 C^T.
+    The stiffness K has `freedoms` rows; the rows of C are constraints. The count is the number of negative pivots of K plus the number of
+    negative eigenvalues of - C K^-1 C^T.
     """
     even = (0.5 * (matrix + matrix.T)).tocsc()
     factor = scipy.sparse.linalg.splu(
@@ -116,9 +117,9 @@ def negative_pivots(matrix: Any, freedoms: int) -> int:
 
 
 def nearest_descent(matrix: Any, scale: Array) -> tuple[float, Array]:
-    """Compute the lowest eigenvalue of the scaled K in the null space of C, and its vector (n,), for a matrix [K, C^T; C, 0].
+    """Compute the lowest eigenvalue of the scaled stiffness K among motions that meet constraints C, and its vector (n,).
 
-    Rows and columns of K are divided by `scale` (n,).
+    The matrix is [K, C^T; C, 0]; the motions are the null space of C. Rows and columns of K are divided by `scale` (n,).
 
     Lanczos' method on the inverse gives the two eigenvalues nearest to zero; the negative eigenvalue, if any, is returned.
     """

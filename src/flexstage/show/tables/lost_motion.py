@@ -168,6 +168,8 @@ def gain_table(lost: LostMotion) -> Table:
 def crosstalk_table(lost: LostMotion) -> Table:
     """Tabulate R_a V^+ T: the achieved fractions of commanded strokes (diagonal), and the coupling between actuators.
 
+    T is the elastic motion per stroke, V are the ideal motions, V^+ is the pseudoinverse, and R_a are the strokes per ideal motion.
+
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -198,6 +200,8 @@ def parasitic_table(lost: LostMotion) -> Table | None:
 
 def correction_table(lost: LostMotion) -> Table:
     """Tabulate the strokes for a required motion xi, corrected for elasticity: a = (R_a V^+ T)^-1 R_a xi.
+
+    R_a are the strokes per ideal motion; `crosstalk_table` shows the matrix R_a V^+ T.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

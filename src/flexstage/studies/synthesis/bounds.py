@@ -24,9 +24,9 @@ def stiffness_bound(energy: float, displacement: float, negative_stiffness: floa
     """Return the largest stiffness K [N/m, N m/rad] along a motion of +-X that is driven by actuators with imposed stroke.
 
     The bound is K X^2 <= U (1 + N/K) with the stroke energy U; N >= 0 is the negative part of the passive stiffness along the motion.
-    Proof: with stroke ratios G, the stiffness is K = G'kG + P, with a passive part P >= -N. Strokes u displace the stage by x: K x = G'k u.
-    Hence x'Kx = (k^1/2 G x)'(k^1/2 u) is at most (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The largest K is the positive root
-    of K^2 = (U/X^2) (K + N).
+    Proof: with the ratios G of strokes to displacements and the stiffnesses k of the actuators, the stiffness is K = G'kG + P, with a
+    passive part P >= -N (' is the transpose). Strokes u displace the stage by x: K x = G'k u. Hence x'Kx = (k^1/2 G x)'(k^1/2 u) is at most
+    (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The largest K is the positive root of K^2 = (U/X^2) (K + N).
 
     >>> round(stiffness_bound(0.025, 1e-3))
     25000
@@ -40,8 +40,9 @@ def stiffness_bound(energy: float, displacement: float, negative_stiffness: floa
 def frequency_bound(energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
     """Return the highest first natural frequency [Hz] of a stage that reaches all displacements together.
 
-    Averaged over the corners of the required displacements, the energies of the motions add up: sum K_j X_j^2 <= U. By Rayleigh's quotient,
-    (2 pi f)^2 M_j <= K_j for the first frequency f, therefore (2 pi f)^2 <= U / sum M_j X_j^2. Springs of negative stiffness are excluded.
+    Averaged over the corners of the required displacements, the energies of the motions j add up: sum K_j X_j^2 <= U, with the stiffnesses
+    K_j, the displacements X_j and the stroke energy U. By Rayleigh's quotient, (2 pi f)^2 M_j <= K_j for the first frequency f and the
+    masses M_j, therefore (2 pi f)^2 <= U / sum M_j X_j^2. Springs of negative stiffness are excluded.
 
     >>> round(frequency_bound(2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 1)
     94.2
@@ -85,9 +86,9 @@ class ForceSource:
 def force_frequency_bound(source: ForceSource, displacement: float, mass: float) -> float:
     """Return the highest natural frequency [Hz] of a motion of +-X that is driven by continuous forces through the best levers.
 
-    For n actuators of force F, mass m and travel T, the lever ratio is g = dx/dX <= T/(2X). Then K X <= n F g and (2 pi f)^2 (M + n m g^2)
-    <= K. K is the total stiffness: the bound includes springs of negative stiffness. The best lever ratio is sqrt(M/(n m)), but at most
-    T/(2X). g = 1 is direct drive.
+    For n actuators of force F, moving mass m and travel T, the ratio of actuator motion to stage motion is g <= T/(2X). With the mass M of
+    the payload and the total stiffness K, K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K. The bound includes springs of negative stiffness.
+    The best lever ratio is sqrt(M/(n m)), but at most T/(2X). g = 1 is direct drive.
 
     >>> coil = ForceSource(force=73.9, mass=0.18, travel=26e-3)
     >>> round(force_frequency_bound(coil, 0.5e-3, 1.0), 1)
@@ -104,7 +105,7 @@ def force_frequency_bound(source: ForceSource, displacement: float, mass: float)
 def leaf_length(thickness: float, displacement: float, young: float, poisson: float, stress: float) -> float:
     """Return the smallest length [m] of a wide guided leaf for a displacement of its end [m] at an allowable stress [Pa].
 
-    The bending stress is 3 E t d / ((1 - nu^2) L^2).
+    The bending stress is 3 E t d / ((1 - nu^2) L^2), with Young's modulus E, thickness t, displacement d, Poisson's ratio nu and length L.
 
     >>> round(leaf_length(0.5e-3, 1e-3, 200e9, 0.3, 500e6) * 1e3, 1)
     25.7

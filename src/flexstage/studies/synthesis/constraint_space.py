@@ -34,7 +34,9 @@ def reciprocal_space(vectors: Array) -> Array:
 
 
 def pure_force_span(wrenches: Array) -> Array:
-    """Return an orthonormal basis (6, k) of the span of all pure forces (f.m = 0 and f != 0) within the span of wrenches (6, n).
+    """Return an orthonormal basis (6, k) of the span of all pure forces within the span of wrenches (6, n).
+
+    A wrench with force f and moment m is a pure force if f.m = 0 and f != 0.
 
     >>> np.abs(pure_force_span(np.eye(6)[:, [0, 3]])).T.tolist()  # a force along x, and a couple about x: only the force
     [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]]

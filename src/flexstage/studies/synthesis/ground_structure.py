@@ -157,7 +157,8 @@ def _image(element: Element, symmetry: Array) -> Element:
 def find_guide(block: Block, motions: frozenset[str], symmetries: Sequence[Array], rows: Sequence[int]) -> Guide | None:
     """Choose the guide with the largest ratio of stiffnesses, without actuators. Returns `None` if no candidate permits the motions.
 
-    Orbits that resist a required motion by more than a small fraction of their stiffness are excluded.
+    Orbits (sets of elements with their mirror images) that resist a required motion by more than a small fraction of their stiffness are
+    excluded.
     """
     scaled, wanted = np.outer(block.scale, block.scale), twists_of(motions)
     stiffness = dict[tuple[Element, ...], Array]()

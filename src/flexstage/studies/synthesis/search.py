@@ -85,10 +85,10 @@ class Answer:
     relative `errors`, if requested; `unverified` is the reason for their absence. `rounds` is the number of searches until all models met
     the requirements.
 
-    `manufactured` is the production yield by the lumped model, if requested: the fraction of stages with scatter of dimensions that meet
-    all requirements. `crossover` is the lowest sensitivity crossover of the control loop with the default controller, if requested. `front`
-    are the Pareto-optimal designs, if there are two goals. `binding` are the active requirements and range ends with their sensitivities,
-    before dimensions are rounded.
+    `manufactured` is the production yield by the lumped model, if requested: the fraction of stages that meet all requirements when their
+    dimensions scatter. `crossover` is the lowest sensitivity crossover of the control loop with the default controller, if requested.
+    `front` are the Pareto-optimal designs, if there are two goals. `binding` are the active requirements and range ends with their
+    sensitivities, before dimensions are rounded.
 
     `efficiency` is the fraction of the actuators' stroke energy that the stage uses (at most 1, see `bounds.efficiency`; `None` for coils).
     `warnings` are those of `flexstage check`.

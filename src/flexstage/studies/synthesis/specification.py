@@ -165,7 +165,8 @@ class Specification:
     def masses(self) -> dict[str, float]:
         """Smallest mass or moment of inertia of the payload along each required motion, for any accompanying other motions.
 
-        For a rotation, it is 1 / (J^-1)_ii with the inertia J about the centre of mass, because (w_i)^2 <= (J^-1)_ii w^T J w.
+        For a rotation, it is 1 / (J^-1)_ii with the inertia J about the centre of mass, because (w_i)^2 <= (J^-1)_ii w^T J w for any
+        angular velocity w.
         """
         least = dict.fromkeys("xyz", self.payload.mass)
         if any(axis not in least for axis in self.displacements):

@@ -22,7 +22,10 @@ _NEAR = 4.0
 
 
 def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) -> Any:
-    """Plot open loops, each with the others closed (Bode plot): magnitude, phase, modes, margins (`spots`), lines at 1 and -180 degrees."""
+    """Plot open loops, each with the others closed (Bode plot): magnitude and phase, modes, margins (`spots`).
+
+    Lines mark the magnitude 1 and the phase -180 degrees.
+    """
     with style_context():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])

@@ -72,7 +72,7 @@ def _settling_band(test: Simulated, name: str) -> float:
 
 
 def error_figure(test: Simulated) -> Any:
-    """Plot the true errors over time, with lengths above angles.
+    """Plot the true errors over time, in one panel for lengths and one for angles.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -101,7 +101,9 @@ def error_figure(test: Simulated) -> Any:
 
 
 def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
-    """Plot rms errors (n, f) in the band for each pass or period, lengths above angles, and as dotted lines the non-repeating error (f,).
+    """Plot rms errors (n, f) in the band for each pass or period, and as dotted lines the non-repeating error `floor` (f,).
+
+    One panel is for lengths, one for angles.
 
     >>> len(lesson_figure(np.array([[1e-6], [1e-7]]), ["x"], ["m"], "pass").axes)
     1

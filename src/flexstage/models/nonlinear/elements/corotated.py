@@ -24,12 +24,12 @@ class Corotated:
     """Superelement: body numbers (p,) of its p ports, nominal arms (p, 3) from the bodies, port axes (p, 3, 3), in stage axes.
 
     - `place` (p, 3): nominal positions of the ports.
-    - `relative` (6 (p - 1), 6 p): matrix from port motions in stage axes to the strains of `stiffness` (6 (p - 1), 6 (p - 1)), as in the
-      linear model.
+    - `relative` (6 (p - 1), 6 p): matrix that converts port motions in stage axes to the strains on which `stiffness` (6 (p - 1), 6 (p -
+      1)) acts, as in the linear model.
     - `squares` (m,): squared angular frequencies of the inner modes.
     - `inertia` (6 p + m, 6 p + m): mass matrix of the motions of the ports, in their axes, and of the modes.
     - `mass`; `centre` (3,): nominal centre of mass.
-    - `share` (6 p, 3): port load per acceleration of the element.
+    - `share` (6 p, 3): loads on the ports per acceleration of the element.
     """
 
     name: str
@@ -51,7 +51,7 @@ class Corotated:
 
 @dataclass(frozen=True, eq=False)
 class PortMotion:
-    """Motions (..., 6 p) of the ports in the corotated frame, and their derivatives (..., 6 p, 6 p) by the body motions.
+    """Motions (..., 6 p) of the ports in the corotated frame, and their derivatives (..., 6 p, 6 p) with respect to the body motions.
 
     `frame` (..., 3, 3) is the corotated frame. `turning` and `drift` (..., 3, 6 p) are the derivatives of the rotation of this frame and of
     the mean position of the ports.

@@ -21,8 +21,9 @@ from flexstage.spatial.rotation import cross, exponential, magnus
 class Shape:
     """Configuration of a flexure: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its n points, rotations at points and end.
 
-    `place` (..., b, n, 3) is the position r, `rate` (..., b, n, 3) is r', `end` (..., b, 3) is r at the end. `soft` (..., b, n, 3, 3) is
-    the compliance R C_n R^T, `tension` (..., b, n) the axial force N. The loads are the `force` at the end and the `weight`.
+    `place` (..., b, n, 3) is the position r, `rate` (..., b, n, 3) is its derivative r' along the length, `end` (..., b, 3) is r at the
+    end. `soft` (..., b, n, 3, 3) is the compliance R C_n R^T of stretch and shear, with the rotation R of the section and the compliance
+    C_n in its axes; `tension` (..., b, n) the axial force N. The loads are the `force` at the end and the `weight`.
     """
 
     rule: Rule
@@ -43,10 +44,12 @@ class Shape:
 class Tangent:
     """Residual `gradient` (..., b, q) of the amplitudes, and the blocks of its derivative (docs/nonlinear.md, 6).
 
-    `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n.
+    The derivatives with respect to the amplitudes are `hessian` (..., b, q, q), H, of the residual, `reach` (..., b, 3, q), B_f, of the end
+    position, and `turning` (..., b, 3, q), J_th, of the end rotation. `soft` (..., b, 3, 3), F_n, is the derivative of the end position
+    with respect to the end force.
 
-    `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are derivatives of the mean position by amplitudes, force and weight (absent
-    without weight).
+    `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are derivatives of the mean position with respect to amplitudes, end force and
+    weight (absent without weight).
     """
 
     gradient: Array
@@ -118,8 +121,8 @@ def tangent(law: FlexureLaw, strain: Array, moment: Array, config: Shape) -> Tan
 def mode_paths(law: FlexureLaw, config: Shape) -> tuple[Array, Array, Array]:
     """Compute displacements (..., b, n, 3, k) and rotations of the points per unit curvature amplitude, with fixed start and end force.
 
-    The function also returns the integrals (..., b, 2, n, 3, 3) of R C_n R^T to each point: displacement per force and per weight
-    (docs/nonlinear.md, 25).
+    The function also returns the integrals (..., b, 2, n, 3, 3) of the compliance R C_n R^T (see `Shape`) to each point: displacement per
+    force and per weight (docs/nonlinear.md, 25).
     """
     rule, modes = config.rule, law.modes[..., None, :, :, :]
     forces = _forces(rule, config.force, config.weight)

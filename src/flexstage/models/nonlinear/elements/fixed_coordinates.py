@@ -17,8 +17,9 @@ _STEP = 1e-30
 class FixedCoordinates:
     """h fixed coordinates: body numbers (h,), nominal arms (h, 3) of the points, `component` (h,) 0 to 5, and `value` (b, h) [m, rad].
 
-    A translation is the displacement of the point; a rotation is a component of the rotation vector log R, with the moment T^-T e as
-    reaction. `origin` (h, 3) are the nominal points. If the cases belong to different designs, arms and origins are (b, h, 3).
+    A translation is the displacement of the point; a rotation is a component of the rotation vector v = log R. Its reaction is a moment
+    along T^-T e, with the unit vector e of the component and the matrix T for which T dv/dt is the angular velocity. `origin` (h, 3) are
+    the nominal points. If the cases belong to different designs, arms and origins are (b, h, 3).
     """
 
     body: Array
@@ -45,7 +46,7 @@ def values(hold: FixedCoordinates, place: int, pose: Pose) -> Array:
 
 
 def gradients(hold: FixedCoordinates, place: int, pose: Pose) -> tuple[Array, Array, Array]:
-    """Compute value (b,), gradient (b, 6) by the body motion and second derivative (b, 6, 6) of a fixed coordinate, by complex steps."""
+    """Compute value (b,), gradient (b, 6) and second derivative (b, 6, 6) of a fixed coordinate with respect to the body motion."""
     position, turn = pose.position[:, hold.body[place]], pose.turn[:, hold.body[place]]
     value, along = _coordinate(hold, place, position, turn)
     step = 1j * _STEP * np.eye(6)[:, None]

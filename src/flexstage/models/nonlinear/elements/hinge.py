@@ -28,7 +28,7 @@ class Hinges:
     - `stroke`, `thrust` (l, 6, m): free deformation and wrench on the second body per input.
     - `push` (l, 6): nominal wrench on the second body.
     - `strut` (l,): length [m] of a strut, which turns about both ends; zero for another link, whose stiffness is about its centre.
-    - `bow` (l, 6, 6, 6): the foreshortening matrices G.
+    - `bow` (l, 6, 6, 6): a matrix G for each deformation, to which foreshortening adds d^T G d / 2 for the deformations d.
     - `locked` (c, 2): pairs of link and DOF without deformation.
 
     If the cases belong to different designs, all arrays except `first`, `second` and `locked` have an axis of cases, (l, b, ...).
@@ -60,7 +60,7 @@ class Ends:
 
 
 def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
-    """Compute deformations (..., 6) and their derivatives (..., 6, 12) by the motions of the two bodies; poses (..., l, b, 3)."""
+    """Compute deformations (..., 6) and derivatives (..., 6, 12) with respect to the motions of both bodies; poses (..., l, b, 3)."""
     turn = _by_case(hinges.turn, 2)
     frame, other = ends.first_turn @ turn, ends.second_turn @ turn
     arm = (ends.first_turn @ _by_case(hinges.arm_first, 1)[..., None])[..., 0]

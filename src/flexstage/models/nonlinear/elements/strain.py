@@ -50,9 +50,11 @@ class Strains:
 def strains(state: State) -> Strains:
     """Compute strains at the ends and the integration points of every flexure, for its thinnest section.
 
-    The strain is |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. At a clamped
-    end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with this strain. Stress includes stretch, bending about both
-    axes, section curvature of a leaf, and Saint-Venant torsion. Restrained warping and stress concentration at fillets are neglected.
+    The strain is |N| / (E A) + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section, with the
+    axial force N, the axial stiffness E A, the curvatures k_y and k_z, the twist rate k_x, the thickness t and the width b. At a clamped
+    end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with this strain (nu: Poisson's ratio). Stress includes stretch,
+    bending about both axes, section curvature of a leaf, and Saint-Venant torsion. Restrained warping and stress concentration at fillets
+    are neglected.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -85,9 +87,10 @@ def strains(state: State) -> Strains:
 def law_reserve(state: State) -> tuple[float, str]:
     """Return the remaining range of the link laws at a state (1 undeformed, 0 at the limit), and a clause that names the limit.
 
-    The strain limit of flexures is 5 %. A 6x6 stiffness of a link or superelement is limited to a 10 % error of a law for small motions.
-    The limits are a rotation of 0.46 rad between the ends, and a displacement of 0.3 of the stage's diagonal (for a superelement, of the
-    diagonal of its ports). For a spring with a length, the displacement limit is this length. Links without stiffness have no limit.
+    The strain limit of flexures is 5 %. The 6x6 stiffness of a link or superelement is a law for small motions, and is limited to motions
+    at which such a law has an error of about 10 %. The limits are a rotation of 0.46 rad between the ends, and a displacement of 0.3 of the
+    stage's diagonal (for a superelement, of the diagonal of its ports). For a spring with a length, the displacement limit is this length.
+    Links without stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges
     used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure has a strain of {_STRAIN:.0%} there")]

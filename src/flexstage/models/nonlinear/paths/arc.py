@@ -87,12 +87,12 @@ class Reference:
 class Point:
     """Equilibrium on a load path: the pose `found`, the load `factor`, and the scaled `step` (n,) from the previous point.
 
-    - `along` (n,): unit tangent of the path in scaled body motion; `slope`: change of the factor along the tangent; `steepest`: maximum
-      slope up to this point.
+    - `along` (n,): unit tangent of the path in scaled body motion; `slope`: derivative of the factor with respect to the path length;
+      `steepest`: largest magnitude of the slope up to this point.
     - `motions`: number of independent motions that decrease the potential energy.
-    - `stiffness`: product of the lowest stiffness of the stage and the stiffness of the weakest flexure between fixed ends, relative to the
-      `reference`. Where the flexure's stiffness is zero, the stage's stiffness has a pole, but the product has none. The product is
-      negative for unstable states, and NaN without a reference.
+    - `stiffness`: product of the lowest stiffness of the stage and the stiffness of the weakest flexure between fixed ends, each divided by
+      its value in `reference`. Where the flexure's stiffness is zero, the stage's stiffness has a pole, but the product has none. The
+      product is negative for unstable states, and NaN without a reference.
     """
 
     found: EquilibriumSolution
@@ -108,9 +108,10 @@ class Point:
 
 
 def continue_path(loading: ProportionalLoading, begin: Point, length: float, points: int) -> Iterator[Point]:
-    """Generate equilibria beyond `begin`, at most `length` apart in motion (translations over the flexure length, rotations in radians).
+    """Generate equilibria beyond `begin`, at most `length` apart in the norm of body motion.
 
-    The path ends after a distance of `points` times `length`, or if there is no equilibrium at a small fraction of `length`.
+    Translations are divided by the longest flexure length, rotations are in radians. The path ends after a distance of `points` times
+    `length`, or if there is no equilibrium at a small fraction of `length`.
     """
     gone = 0.0
     for point in march(loading, begin, length, longest=length):
@@ -175,8 +176,8 @@ def _ahead(before: Point | None, last: Point) -> float:
 def step_along(loading: ProportionalLoading, last: Point, length: float) -> Point | None:
     """Compute the next equilibrium at a step length, or `None` without convergence (Riks 1979, see `continuation`).
 
-    If the path is steep, corrections keep the load factor constant. On a flat path, corrections are normal to the step, and the factor is
-    an unknown.
+    If the slope is a large fraction of the largest slope so far, corrections keep the load factor constant. On a flatter path, corrections
+    are normal to the step, and the factor is an unknown.
     """
     scale, options, model = loading.scale, loading.options, loading.model
     whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose
@@ -208,7 +209,7 @@ def step_along(loading: ProportionalLoading, last: Point, length: float) -> Poin
 
 
 def load_rate(loading: ProportionalLoading, pose: Pose, factor: float, system: System) -> Array:
-    """Compute the derivative (n,) of loads and fixed coordinates by the factor at a pose."""
+    """Compute the derivative (n,) of loads and fixed coordinates with respect to the load factor, at a pose."""
     if loading.plain:
         return np.append(exerted_by(loading.model, pose, loading.gain)[0], np.zeros(len(loading.hold.body)))
     probe = _PROBE * abs(factor) or _ONSET

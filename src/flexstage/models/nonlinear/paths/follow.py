@@ -136,7 +136,7 @@ def continued(start: Task, end: Task) -> EquilibriumSolution:
 
 
 def pose_distance(model: Nonlinear, one: Pose, other: Pose) -> float:
-    """Return the largest motion of bodies between two poses: translations over the longest flexure length, rotations in radians."""
+    """Return the largest change between two poses: positions divided by `model.size`, and entries of rotation matrices."""
     shift = np.max(np.abs(one.position - other.position)) / model.size
     return float(max(shift, np.max(np.abs(one.turn - other.turn))))
 

@@ -224,9 +224,9 @@ def continuation(
 ) -> LoadPath:
     """Compute equilibria along the factor on `load` by arc-length continuation, past limit points.
 
-    `step` is the maximum step in body motion (translations over the flexure length, rotations in radians); steps are shorter on a curved
-    path. The path has the length `points` times `step`, and ends earlier if there is no further equilibrium. Coordinates in `hold` are
-    fixed at their values.
+    `step` is the maximum step in body motion (translations divided by the longest flexure length, rotations in radians); steps are shorter
+    on a curved path. The path has the length `points` times `step`, and ends earlier if there is no further equilibrium. Coordinates in
+    `hold` are fixed at their values.
 
     The method is by Riks (Int J Solids Structures 15, 1979), with corrections normal to the first step.
 
