@@ -15,7 +15,9 @@ from flexstage.parts.section import Rectangle
 
 
 def notch_beam(part: Notch, material: Material) -> Beam:
-    """Build the Timoshenko beam of a notch of section (t + 2 w(x)) x b, shear factor 6/5, with rigid ends and restrained warping.
+    """Build the Timoshenko beam of a notch with rigid ends and restrained warping.
+
+    The section is (t + 2 w(x)) x b, with least thickness t, growth w(x) on each side and width b. The shear factor is 6/5.
 
     >>> from flexstage.parts.profile import Circular
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)

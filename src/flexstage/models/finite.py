@@ -58,7 +58,7 @@ class FiniteMotion:
     - `pose` of the platform at its reference point;
     - `bodies`: poses of all bodies at their reference points. The pose of a body with a free internal mode has the smallest possible
       rotation, and does not determine the reading of a gauge on this body (see `Kinematics.sensing`).
-    - `residual` (...): largest constraint error [m, rotations times `length`];
+    - `residual` (...): largest constraint error [m]; errors in rotation are multiplied by `length`;
     - `iterations`: number of steps.
     """
 

@@ -90,10 +90,10 @@ def _words(value: Any) -> str:
 
 
 def mat_variables(analysis: Analysis) -> dict[str, Any]:
-    """Return the variables of the MATLAB file: R_a, R_s, and for elastic models K, M, B, C, D, frequencies and state space.
+    """Return the variables of the MATLAB file: mappings R_a and R_s; for elastic models also K, M, B, C, D, frequencies and state space.
 
-    The model is M q'' + K q = B u, y = C q + D u, in SI units. Variables that do not exist for the model or the stage are left out, with
-    the reason in `notes`. Names and units of rows and columns are in cell arrays.
+    The model is M q'' + K q = B u, y = C q + D u in SI units, with the coordinates q, inputs u and outputs y. Variables that do not exist
+    for the model or the stage are left out, with the reason in `notes`. Names and units of rows and columns are in cell arrays.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -51,8 +51,8 @@ def budget(
     means 1 K if drift is known. If expansion coefficients are missing and the change is 0 or `None`, drift is omitted, and `reasons` has a
     note.
 
-    All these contributions are largest absolute values. xi are the displacements, R_a is the ideal mapping to strokes a, J = dx/da and V
-    are the ideal Jacobian and motions, T is the gain of the elastic model, and Lambda = I - R_a V^+ T is the lost motion:
+    xi are the displacements, and a = R_a xi the ideal strokes. J = dx/da is the ideal Jacobian, V are the ideal motions, T = dx/da is the
+    gain of the elastic model, and Lambda = I - R_a V^+ T its lost motion. All these contributions are largest absolute values:
 
     - lost motion: J diag(Lambda) R_a xi;
     - crosstalk: J (Lambda - diag(Lambda)) R_a xi, plus the motion outside the ideal motions;

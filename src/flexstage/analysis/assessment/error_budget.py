@@ -50,7 +50,7 @@ class ErrorBudget(Result):
 
     @property
     def sums(self) -> Annotated[Matrix, VIEW]:
-        """Linear and root-sum-square sums (columns) by axis (rows), for `ideal` and `corrected`."""
+        """Sums of the errors of all sources, linear and root-sum-square (columns), by axis (rows), for `ideal` and `corrected`."""
         columns = [
             function(matrix.values)
             for matrix in (self.ideal, self.corrected)

@@ -41,12 +41,12 @@ _CHUNK = 24
 class Sensitivities(Result):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
-    `frequency` (P, k) is in Hz per SI unit of the parameter; for the modes of a cluster, it is the derivative of the mean frequency.
-    `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi,
-    converted to frequency slopes; Phi are the shapes of the modes, lambda is the mean of their squared angular frequencies, dK and dM are
-    the derivatives of stiffness and mass. These slopes are valid for changes of a single parameter and cannot be added. `gain` and `loss`
-    (P, n) are the derivatives of each actuator's gain and lost motion; n = 0 if the strokes do not determine the platform's motion.
-    `missing` has the reasons for absent results.
+    `frequency` (P, k) contains the derivatives of k frequencies, in Hz per SI unit of the parameter; for the modes of a cluster, these are
+    the derivatives of the mean frequency. `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the
+    eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi, converted to frequency slopes; Phi are the shapes of the modes, lambda is the mean of
+    their squared angular frequencies, dK and dM are the derivatives of stiffness and mass. These slopes are valid for changes of a single
+    parameter and cannot be added. `gain` and `loss` (P, n) are the derivatives of each actuator's gain and lost motion; n = 0 if the
+    strokes do not determine the platform's motion. `missing` has the reasons for absent results.
     """
 
     parameters: tuple[str, ...]

@@ -145,7 +145,7 @@ def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """The critical `factor` of a growing `load`. The `cases` are the requested load cases and stroke ends; `factor` is of the first case.
+    """The critical `factor` of a growing `load` for the first of the `cases`, which are the requested load cases and stroke ends.
 
     `kind` is the kind of instability, `link` the name of a flexure that buckles individually, and `shape` the motion of each body.
     """

@@ -75,8 +75,8 @@ class ReadLines:
 class MeasuredMargins(InNotebook):
     """Margins of a loop at the frequency lines of a test: peak of S, and margins by coordinate.
 
-    The peak is the largest singular value of S, with rotations scaled to lengths. `lines` is the number of frequency lines within `band`
-    [Hz]. Between the lines, the response is unknown, and a narrow peak may be higher.
+    The peak is the largest singular value of the sensitivity S, with rotations multiplied by the stage's length. `lines` is the number of
+    frequency lines within `band` [Hz]. Between the lines, the response is unknown, and a narrow peak may be higher.
     """
 
     band: Annotated[tuple[float, float], FREQUENCY]

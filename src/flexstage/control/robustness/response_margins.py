@@ -14,11 +14,11 @@ _NOTHING = 1e-300
 
 @dataclass(frozen=True, eq=False)
 class ResponseMargins:
-    """Loop margins at frequency lines; `sizes` (f, n) are |S_ii| of each loop with the other loops closed.
+    """Loop margins at frequency lines; `sizes` (f, n) are the sensitivities |S_ii| of each loop with the other loops closed.
 
-    `peak` is the largest singular value of S, with rotations scaled to lengths. Stability limits of each loop are the nearest gain factors
-    below 1 (`lows`) and above 1 (`gains`), the `phases` [rad] and the `delays` [s]. `rejections` [Hz] are the first crossings of |S_ii| = 1
-    (NaN: none).
+    `peak` is the largest singular value of the sensitivity S, with rotations multiplied by the stage's length. Stability limits of each
+    loop are the nearest gain factors below 1 (`lows`) and above 1 (`gains`), the `phases` [rad] and the `delays` [s]. `rejections` [Hz] are
+    the first crossings of |S_ii| = 1 (NaN: none).
     """
 
     sizes: Array
@@ -40,7 +40,7 @@ class LoopLines:
     control: Array
 
     def sensitivity(self, plant: Array) -> Array:
-        """Compute S (f, c, c) = (I + P K)^-1 for the responses P (f, c, n) from commands to pose."""
+        """Compute the sensitivity S (f, c, c) = (I + P K)^-1 for the responses P (f, c, n) from commands to pose; K is `control`."""
         return np.linalg.inv(np.eye(plant.shape[1]) + plant @ self.control)
 
     def margins(self, plant: Array) -> ResponseMargins:

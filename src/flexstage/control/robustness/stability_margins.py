@@ -132,7 +132,10 @@ def _has_direct_gain(own: complex, step: float | None) -> bool:
 
 @dataclass(frozen=True)
 class Peaks(InNotebook):
-    """Peaks of S = (I + L)^-1 and T = I - S at a cut: largest singular values, with rotations scaled to lengths and commands unscaled."""
+    """Peaks of S = (I + L)^-1 and T = I - S at a `cut`, for the open loops L: the largest singular values over all frequencies.
+
+    At the pose, rotations are multiplied by the stage's length; commands are not scaled.
+    """
 
     cut: LoopBreak
     sensitivity: Peak

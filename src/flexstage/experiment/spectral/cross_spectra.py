@@ -50,7 +50,7 @@ class Segments(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Spectra:
-    """One-sided spectral densities at `frequencies` (f,) in Hz: `xx` (f, m, m), `yx` (f, p, m) and `yy` (f, p, p).
+    """One-sided spectral densities of m inputs and p outputs at f `frequencies` [Hz]: `xx` (f, m, m), `yx` (f, p, m), `yy` (f, p, p).
 
     X and Y are the transforms of the inputs and outputs, E is the mean over segments. `yx` is E[Y X^H]: entry (i, j) is output i times the
     conjugate of input j. `xx` is E[X X^H], and `yy` is E[Y Y^H]. The paper's G_ij = E[X_i* Y_j] (equation 29) is yx[j, i]. The unit of an

@@ -25,7 +25,7 @@ _DRIVEN = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class LocalResponses:
-    """Responses (f, p, m) of outputs to inputs at `frequencies` (f,) [Hz], in the channels' units, with standard deviations (rms)."""
+    """Responses (f, p, m) of outputs to inputs at `frequencies` (f,) [Hz], in the channels' units, with rms values of their errors."""
 
     frequencies: Array
     values: Array

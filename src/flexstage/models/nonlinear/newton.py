@@ -29,7 +29,7 @@ _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust
 
 @dataclass(frozen=True, eq=False)
 class EquilibriumSolution:
-    """Poses of b cases with status, number of iterations, last residual of flexures, and load fraction `reached`.
+    """Poses of b cases with `status`, number of `iterations`, last `residual` (see `lack`), and load fraction `reached`.
 
     A failed case has the pose at the fraction `reached`, or its start pose if `reached` is zero.
     """
@@ -256,7 +256,7 @@ def _together(tasks: list[Task], design: Array) -> Task:
 
 
 def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions) -> tuple[Pose, Array, Array]:
-    """Compute one step: the new pose, the size of the step (b,), and the flexure residuals before the step (b,)."""
+    """Compute one step: the new pose, the size of the step (b,), and the largest residual before the step (b,)."""
     system = assemble(model, pose, loads, hold)
     step = system.solved(-system.residual)
     size = motion(model, step, model.size)

@@ -39,8 +39,9 @@ from flexstage.spatial.frame import spatial_rotation, transport
 class Flexures:
     """Group of l flexures whose tables have the same shape.
 
-    `first` and `second` (l,) are body numbers, `turn` (l, 3, 3) the nominal frames of the starts. `arm_first` (l, 3) is from the first
-    body's reference point to the start, `arm_second` from the second body's reference point to the end.
+    `first` and `second` (l,) are the numbers of the bodies at the flexures' starts and ends, `turn` (l, 3, 3) the nominal frames at the
+    starts. `arm_first` (l, 3) is from the first body's reference point to the start, `arm_second` from the second body's reference point to
+    the end.
     """
 
     names: tuple[str, ...]

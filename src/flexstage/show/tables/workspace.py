@@ -50,7 +50,7 @@ def corner_table(corner: Utilisation) -> Table | None:
 
 
 def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Tabulate gauge readings at the commanded corner relative to the gauges' ranges, and the pose resolution."""
+    """Tabulate gauge readings at the commanded corner with their ratios to the gauges' ranges, and the pose resolution."""
     gauges = workspace.gauges
     yield None if gauges is None else result_table(gauges, notes=[f"Worst combination of {command_text(gauges.command)}."])
     yield result_table(workspace.resolution)

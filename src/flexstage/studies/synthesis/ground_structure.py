@@ -157,8 +157,8 @@ def _image(element: Element, symmetry: Array) -> Element:
 def find_guide(block: Block, motions: frozenset[str], symmetries: Sequence[Array], rows: Sequence[int]) -> Guide | None:
     """Choose the guide with the largest ratio of stiffnesses, without actuators. Returns `None` if no candidate permits the motions.
 
-    Orbits (sets of elements with their mirror images) that resist a required motion by more than a small fraction of their stiffness are
-    excluded.
+    Orbits (an element with its images under the symmetries) that resist a required motion by more than a small fraction of their stiffness
+    are excluded.
     """
     scaled, wanted = np.outer(block.scale, block.scale), twists_of(motions)
     stiffness = dict[tuple[Element, ...], Array]()
@@ -185,8 +185,8 @@ def find_guide(block: Block, motions: frozenset[str], symmetries: Sequence[Array
 def with_actuators(guide: Guide, block: Block, motions: frozenset[str], room: Sequence[Place]) -> Guide:
     """Place an actuator for each motion at places without elements, so that the map from actuators to motions is well conditioned.
 
-    The merit is the smallest singular value of the forces along the required motions, minus a small fraction of the forces along other
-    motions.
+    The merit is the smallest singular value of the forces along the required motions, minus a small fraction of the norm of the forces
+    along other motions.
     """
     used = {each.place for each in guide.elements}
     free = [each for each in room if each not in used]

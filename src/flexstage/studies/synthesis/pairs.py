@@ -48,7 +48,7 @@ class CandidatePair:
 
 @dataclass(frozen=True)
 class ImpossiblePair:
-    """A pair that bounds exclude, with its worst `shortfall`: a universal bound if there is one, then the smallest ratio."""
+    """A pair that bounds exclude. Its `shortfall` has the smallest ratio, of the universal bounds if there are any, else of all bounds."""
 
     architecture: str
     actuator: str
@@ -64,7 +64,7 @@ def _energy(pair: CandidatePair) -> float | None:
 
 
 def energy_groups(spec: Specification, pair: CandidatePair) -> list[tuple[float, dict[str, float]]]:
-    """Return energies of actuators [J], each with the displacements reached at once: one for each axis, or one for all axes."""
+    """Return energies of actuators [J], each with the displacements reached at once: one energy for each axis, or one for all axes."""
     energy, moved = _energy(pair) or math.inf, spec.displacements
     if pair.architecture.own:
         return [(energy / len(moved), {axis: value}) for axis, value in moved.items()]

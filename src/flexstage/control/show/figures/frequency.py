@@ -127,7 +127,7 @@ def _measured_panel(axes: Any, found: ReadLines, index: int) -> None:
 
 
 def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
-    """Plot closed-loop poles (n,) in the z plane, and the damping ratios of the loop and of the stage `alone` over frequency.
+    """Plot closed-loop poles (n,) in the z plane, and the damping ratios of the loop and of the stage `alone` against frequency.
 
     >>> len(pole_figure(np.array([0.9 + 0.1j, 0.9 - 0.1j]), 1e-4).axes)
     2

@@ -119,7 +119,7 @@ def tangent(law: FlexureLaw, strain: Array, moment: Array, config: Shape) -> Tan
 
 
 def mode_paths(law: FlexureLaw, config: Shape) -> tuple[Array, Array, Array]:
-    """Compute displacements (..., b, n, 3, k) and rotations of the points per unit curvature amplitude, with fixed start and end force.
+    """Compute displacements (..., b, n, 3, k) and rotations of the points per unit curvature amplitude: fixed start, constant end force.
 
     The function also returns the integrals (..., b, 2, n, 3, 3) of the compliance R C_n R^T (see `Shape`) to each point: displacement per
     force and per weight (docs/nonlinear.md, 25).

@@ -22,13 +22,14 @@ _STEP = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Hinges:
-    """l links with a 6x6 stiffness about a centre: body numbers, nominal link axes `turn` (l, 3, 3), arms (l, 3) from the body references.
+    """l links with a 6x6 stiffness about a centre: body numbers, nominal link axes `turn` (l, 3, 3), arms (l, 3) from reference points.
 
     - `stiffness` (l, 6, 6).
-    - `stroke`, `thrust` (l, 6, m): free deformation and wrench on the second body per input.
+    - `stroke` (l, 6, m): free deformation per unit of each input; `thrust` (l, 6, m): wrench on the second body per unit of each input.
     - `push` (l, 6): nominal wrench on the second body.
     - `strut` (l,): length [m] of a strut, which turns about both ends; zero for another link, whose stiffness is about its centre.
-    - `bow` (l, 6, 6, 6): a matrix G for each deformation, to which foreshortening adds d^T G d / 2 for the deformations d.
+    - `bow` (l, 6, 6, 6): a matrix G for each deformation; foreshortening adds d^T G d / 2 to this deformation, where d are all six
+      deformations.
     - `locked` (c, 2): pairs of link and DOF without deformation.
 
     If the cases belong to different designs, all arrays except `first`, `second` and `locked` have an axis of cases, (l, b, ...).
@@ -103,7 +104,7 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """Compute internal wrenches (..., l, b, 6): elastic wrenches minus inputs (b, m) and preloads, plus `held` forces of locked DOFs."""
+    """Compute internal wrenches (..., l, b, 6): elastic ones minus those of inputs (b, m) and preloads, plus the forces `held` of locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 

@@ -158,7 +158,7 @@ def require_continuation(start: State, end: State) -> None:
 def proportional_loading(
     start: State, load: Mapping[str, float], factor: float, options: SolverOptions, *, locked: Sequence[str] | None = None
 ) -> ProportionalLoading:
-    """Build the loading of a state in which `load` is proportional to a factor; `factor` is its value at the state."""
+    """Build the loading in which `load` is proportional to a load factor; `factor` is the value of this load factor at the state."""
     model = start.model
     rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
     gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], load.get(STATED, 0.0) * np.ones(1))

@@ -98,7 +98,7 @@ def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: 
 
 
 def continued(start: Task, end: Task) -> EquilibriumSolution:
-    """Compute the equilibrium of one case that is reached from `start` as loads and fixed coordinates change in proportion to `end`.
+    """Compute the equilibrium of one case that is reached from `start` when all loads and fixed coordinates change linearly to `end`.
 
     The equilibrium `end` is returned unchanged if it is near the start, or if its path starts unstable. An unstable `end` is also returned
     unchanged if the path has an imperfect bifurcation.
