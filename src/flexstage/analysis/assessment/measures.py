@@ -82,12 +82,16 @@ class Extreme(Enum):
 class MeasureKind:
     """Kind of measure: the `form` of its key, its `quantity` (`about`: for rotations), and the function `work` that computes its SI value.
 
-    The first sentence of the docstring of `work` defines the measure. `pointed`: a point may be specified. `extreme`: `work` returns pieces
-    (..., m), one for every actuator, hinge or stack; the least or largest piece is the measure, and an optimiser uses all pieces.
-    `softening`: at worst, a permanent load with critical load factor n multiplies the measure by (1 - 1/n)^softening. `over_strokes`: the
-    measure is the worst over the full range of strokes. `load_dependent`: the measure depends on lost motion, drift or deflection, which
-    the permanent load changes. `analytic`: complex-step differentiation is valid. `along`: the measure is evaluated along a path of the
-    design, or at a point of the path.
+    The first sentence of the docstring of `work` defines the measure.
+
+    - `pointed`: a point may be specified.
+    - `extreme`: `work` returns m pieces (..., m), one for every actuator, hinge or stack; the least or largest piece is the measure, and an
+      optimiser uses all pieces.
+    - `softening`: an exponent; at worst, a permanent load with the critical load factor n multiplies the measure by (1 - 1/n)^softening.
+    - `over_strokes`: the measure is the worst over the full range of strokes.
+    - `load_dependent`: the measure depends on lost motion, drift or deflection, which the permanent load changes.
+    - `analytic`: complex-step differentiation is valid.
+    - `along`: the measure is evaluated along a path of the design, or at a point of the path.
     """
 
     form: str

@@ -101,7 +101,7 @@ def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -
 
 
 def block_table(stage: SolidStage) -> Table:
-    """Tabulate the effect of the elasticity of bodies on each platform mode; bodies are rigid in all other models."""
+    """Tabulate the effect of the elasticity of bodies on each platform mode, compared with rigid bodies."""
     found = stage.modes
     names = {"platform mode": range(1, len(found.platform) + 1), "name": [found.names[index] for index in found.platform]}
     notes = ["Frequency change: to first order, relative to rigid bodies.", *_stated_note(stage.as_stated)]

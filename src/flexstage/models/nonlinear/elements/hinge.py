@@ -104,7 +104,7 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """Compute internal wrenches (..., l, b, 6): elastic ones minus those of inputs (b, m) and preloads, plus the forces `held` of locked DOFs."""
+    """Compute internal wrenches (..., l, b, 6): elastic minus those of inputs (b, m) and preloads, plus forces `held` of locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 

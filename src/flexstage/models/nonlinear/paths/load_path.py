@@ -36,8 +36,8 @@ class Event:
 class LoadPath:
     """Load path: k equilibria along `drive`, with its `values` (k,) [m, rad, N, N m, or a load factor] and a `state` for each.
 
-    `motions` (k,) is the number of unstable motions with a fixed drive coordinate (0: stable; -1: no equilibrium). `locked` coordinates are
-    fixed along the path.
+    `motions` (k,) is the number of unstable motions while the drive coordinate is fixed (0: stable; -1: no equilibrium). `locked`
+    coordinates are fixed along the path.
 
     `turns` (k - 1,) are the extreme loads between adjacent points (NaN: the load is monotonic there). `turns` is `None` if the caller
     specified the values.
@@ -224,9 +224,9 @@ def continuation(
 ) -> LoadPath:
     """Compute equilibria along the factor on `load` by arc-length continuation, past limit points.
 
-    `step` is the maximum step in body motion (translations divided by the longest flexure length, rotations in radians); steps are shorter
-    on a curved path. The path has the length `points` times `step`, and ends earlier if there is no further equilibrium. Coordinates in
-    `hold` are fixed at their values.
+    `step` is the maximum norm of the body motion between two points (translations divided by the longest flexure length, rotations in
+    radians); steps are shorter on a curved path. The path has the length `points` times `step`, and ends earlier if there is no further
+    equilibrium. Coordinates in `hold` are fixed at their values.
 
     The method is by Riks (Int J Solids Structures 15, 1979), with corrections normal to the first step.
 
