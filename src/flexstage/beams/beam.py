@@ -18,7 +18,7 @@ class Beam:
     """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), for (x, y, z, rx, ry, rz).
 
     The flexibilities are 1/(E A), k/(G A) with the shear factor k for y and for z, the twist rate per torque, 1/(E I_y) and 1/(E I_z). The
-    inertias are rho A for x, y and z, rho I_p, rho I_y, rho I_z.
+    inertias are rho A for x, y and z, and rho I_p, rho I_y, rho I_z for the rotations, with the density rho.
     """
 
     points: Stations

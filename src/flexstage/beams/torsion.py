@@ -43,14 +43,17 @@ _TOGETHER = 32
 
 @dataclass(frozen=True, eq=False)
 class Twisting:
-    """Response to a unit torque at the stations (..., m) of a hinge: twist `rate` phi' [rad/(N m^2)] and `bimoment` E C_w theta' [m]."""
+    """Response of a hinge to a unit torque at stations (..., m): twist `rate` phi' [rad/(N m^2)], `bimoment` E C_w theta' [m].
+
+    phi is the twist, theta the warping (see the module docstring).
+    """
 
     rate: Array
     bimoment: Array
 
 
 def free_twist(section: Section, shear: Array) -> Twisting:
-    """Compute the twist of a part with free warping, phi' = 1 / (G J) (Saint-Venant), e.g. circular sections.
+    """Compute the twist rate phi' = 1 / (G J) of a part with free warping and Saint-Venant stiffness G J, e.g. of circular section.
 
     >>> from flexstage.parts.section import circle
     >>> bool(abs(free_twist(circle(np.ones(1), 1.0), np.ones(1)).rate[0] - 32 / np.pi) < 1e-12)

@@ -58,9 +58,10 @@ class ReadChannel:
 
 @dataclass(frozen=True, eq=False)
 class ReadLines:
-    """Sensitivity |S_ii| (f, n) over `frequencies` (f,) [Hz]: `measured` with 95 % limits per line, `fitted`, `predicted`.
+    """Sensitivities |S_ii| (f, n) of n loops at f `frequencies` [Hz]: `measured`, with 95 % limits `low` and `high`, `fitted`, `predicted`.
 
-    `low` and `high` are absent if the uncertainty of the test's responses is unknown.
+    The `fitted` values are those of the identified plant, the `predicted` values those of the stage's model. `low` and `high` are absent if
+    the uncertainty of the test's responses is unknown.
     """
 
     frequencies: Array

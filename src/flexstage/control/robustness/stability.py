@@ -63,9 +63,9 @@ class Verdict(InNotebook):
 def verdict(closed: Loop) -> Verdict:
     """Determine the stability of a loop from the eigenvalues of its closed system.
 
-    A mode's participation in a pole is the sum of |left x right eigenvector| over the mode's states (Perez-Arriaga, Verghese, Schweppe
-    1982). Modes within 0.1 % of one another in frequency count as one source. At a gain limit, the growth rate changes sign. From a stable
-    gain factor, limits are searched upwards in steps of 8 % and downwards in steps of 40 %.
+    A mode's participation in a pole is the sum, over the mode's states, of the magnitudes of the products of left and right eigenvector
+    entries (Perez-Arriaga, Verghese, Schweppe 1982). Modes within 0.1 % of one another in frequency count as one source. At a gain limit,
+    the growth rate changes sign. From a stable gain factor, limits are searched upwards in steps of 8 % and downwards in steps of 40 %.
 
     >>> from flexstage.control.example import integral_loop
     >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).slowest_pole.source

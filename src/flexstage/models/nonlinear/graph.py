@@ -350,7 +350,10 @@ def follow(group: Flexures, bent: FlexureState, moved: Array) -> Array:
 
 
 def flexure_weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
-    """Return the weight per length of flexures, divided by E I / L^3, in their start frames; `None` without gravity."""
+    """Return the weight per length of flexures, divided by E I / L^3, in their start frames; `None` without gravity.
+
+    E I is the bending stiffness, L the length of a flexure.
+    """
     if not np.any(loads.gravity):
         return None
     density = law.line_mass * law.length**3 / law.rigidity

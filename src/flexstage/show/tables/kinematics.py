@@ -64,7 +64,9 @@ def _command_text(kinematics: Kinematics) -> str:
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
-    """Tabulate V^T W, the generalised forces along ideal motions per unit input of each force actuator; `None` without force actuators.
+    """Tabulate V^T W, the generalised forces along the ideal motions V of the wrenches W per unit input of each force actuator.
+
+    Returns `None` without force actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -82,7 +84,9 @@ def force_table(kinematics: Kinematics) -> Table | None:
 
 
 def mapping_table(kinematics: Kinematics) -> Table:
-    """Tabulate R_a = da/dxi, the stroke of each actuator per platform motion. Raises `DesignError` if the stage is under-actuated.
+    """Tabulate the mapping R_a = da/dxi, the stroke of each actuator per platform motion.
+
+    Raises `DesignError` if the stage is under-actuated.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -93,7 +97,7 @@ def mapping_table(kinematics: Kinematics) -> Table:
 
 
 def gauge_table(kinematics: Kinematics) -> Table:
-    """Tabulate R_s = ds/dx, the reading of each gauge for each motion of the platform.
+    """Tabulate the mapping R_s = ds/dx, the reading of each gauge per motion of the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 
 def stroke_energy(stroke: float, stiffness: float, count: int = 1) -> float:
-    """Return the elastic energy U = n k (s/2)^2 [J] of `count` actuators of full stroke s [m] and stiffness k [N/m].
+    """Return the elastic energy U = n k (s/2)^2 [J] of n = `count` actuators of full stroke s [m] and stiffness k [N/m].
 
     >>> round(stroke_energy(150e-6, 17e6, 6), 3)
     0.574

@@ -42,7 +42,7 @@ def noise_share_figure(found: NoiseBudget) -> Any:
 
 
 def noise_spectrum_figure(found: NoiseBudget) -> Any:
-    """Plot amplitude densities of each coordinate, and its cumulative rms from the lowest frequency, in a column for each unit."""
+    """Plot the amplitude density of each coordinate, and its rms accumulated from the lowest frequency, in a column for each unit."""
     units = tuple(dict.fromkeys(found.units))
     with style_context():
         figure = canvas(FULL, 3.5)

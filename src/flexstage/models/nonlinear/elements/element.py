@@ -62,7 +62,7 @@ class Tangent:
 
 
 def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = None) -> Shape:
-    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is the weight per length, divided by E I / L^3."""
+    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is that of `graph.flexure_weight`."""
     rule = gauss(law.modes.shape[-3])
     count = law.modes.shape[-1]
     curvature = _apply(law.modes, strain[..., :count])
@@ -154,7 +154,10 @@ def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
 
 
 def energy(law: FlexureLaw, strain: Array, config: Shape) -> Array:
-    """Compute the strain energy (..., b), divided by E I / L, relative to the straight state, including stretch and shear."""
+    """Compute the strain energy (..., b) relative to the straight state, including stretch and shear, divided by E I / L.
+
+    E I is the bending stiffness, L the length of the flexure.
+    """
     quadratic = np.sum(strain * (0.5 * strain @ law.form - law.rest[..., None, :]), axis=-1)
     gauss_two, gauss_four = _gaussian(config)
     stretch = law.stretch[..., None, None, :]

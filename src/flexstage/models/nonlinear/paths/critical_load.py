@@ -63,7 +63,8 @@ class Critical:
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
     """Return the number (...) of independent motions that decrease the potential energy of each case: 0 if stable, -1 without equilibrium.
 
-    This number is the count of negative eigenvalues of the stage stiffness and of each flexure's own system (without its six multipliers).
+    This number is the count of negative eigenvalues of the stage stiffness and of the system of each flexure's inner unknowns (without its
+    six multipliers).
 
     Fixed coordinates in `locked` remain fixed (default: all). Other fixed coordinates are released, and their reactions act as loads.
     """

@@ -53,7 +53,7 @@ def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Ar
 
 
 def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
-    """Compute the lowest eigenvalue of all flexures' scaled own systems, and the name of the flexure; 1 if there are no flexures.
+    """Compute the lowest eigenvalue of the scaled systems of the flexures' inner unknowns, and the flexure's name; 1 without flexures.
 
     The eigenvalues of the six multipliers of each flexure are excluded.
     """

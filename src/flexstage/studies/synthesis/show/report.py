@@ -65,7 +65,7 @@ def bound_figure(answers: list[tuple[Answer, float]]) -> Any:
 
 
 def front_figure(found: Answers, points: Sequence[tuple[Answer, FrontPoint]]) -> Any:
-    """Draw the designs of the joint front over both goals, with one colour for each pair."""
+    """Draw the designs of the joint front in the plane of both goals, with one colour for each pair."""
     (_, key), (_, second) = found.specification.goal, found.specification.second_goal or ("", "")
     with style_context():
         figure = canvas(FULL, 2.9)
