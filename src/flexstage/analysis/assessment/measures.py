@@ -611,7 +611,8 @@ def clearance(bench: StageResults, asked: Measure) -> float:
     """Smallest gap between outlines not connected by a joint, at rest and at the corners of the required strokes; negative for an overlap.
 
     The linear model gives the motion at the corners (at the ends of single strokes, if more than three are required). Bodies are rigid; a
-    link has the mean of the motions of the two bodies that it joins. Without required strokes or actuators, the measure is the gap at rest.
+    link moves by the mean of the motions of the two bodies that it joins. Without required strokes or actuators, the measure is the gap at
+    rest.
     """
     found = [least_gap(bench.mechanism, each) for each in ({}, *_corner_twists(bench))]
     known = [each.distance for each in found if each is not None]

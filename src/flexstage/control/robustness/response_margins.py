@@ -33,7 +33,7 @@ class ResponseMargins:
 
 @dataclass(frozen=True, eq=False)
 class LoopLines:
-    """Frequency lines [Hz], the coordinates' scale, and the controller's response (f, n, c) from error to command."""
+    """Frequency `lines` [Hz], the coordinates' `scale`, and the controller's response `control` (f, n, c) from error to command."""
 
     lines: Array
     scale: Array

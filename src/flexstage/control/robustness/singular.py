@@ -73,8 +73,8 @@ def lower_bound(matrix: Array) -> tuple[float, Array]:
     """Maximise the spectral radius of e^{j theta_i} M_ij over theta.
 
     Any theta gives a lower bound of the structured singular value mu. The BFGS method with several start values uses the derivatives d
-    log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x), where lambda is the largest eigenvalue, with the right and left eigenvectors x and
-    y.
+    log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x), where lambda is the eigenvalue of the largest magnitude, with the right and left
+    eigenvectors x and y.
 
     >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # equal to the largest singular value
     (2.236068, 2.236068)

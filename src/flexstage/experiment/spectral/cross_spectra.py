@@ -41,7 +41,7 @@ class Window(Enum):
 
 @dataclass(frozen=True)
 class Segments(CheckedFields):
-    """Segmentation of a record: length of a segment in `seconds` (the inverse is the resolution in Hz), relative `overlap`, and window."""
+    """Segmentation of a record: `seconds` of a segment (the inverse is the resolution in Hz), fraction of `overlap`, and `window`."""
 
     seconds: Annotated[float, INNER]
     overlap: float = 0.5

@@ -178,7 +178,7 @@ def equilibrium(
 
     Without `start`, the result is on the path of equilibria from the unloaded stage, along which all loads and fixed coordinates grow in
     proportion. The result is NaN if a limit point, a bifurcation or an end of the path is before the full load. Other equilibria are
-    permitted by `options` with `past` or without `arcs`, if the unloaded stage is unstable, and beyond an imperfect bifurcation.
+    permitted if `options.past` is true, if `options.arcs` is 0, if the unloaded stage is unstable, and beyond an imperfect bifurcation.
 
     Raises `DesignError` for unknown names.
 

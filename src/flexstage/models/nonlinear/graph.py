@@ -159,7 +159,7 @@ def weight_motion(bent: FlexureState) -> Array:
 
 
 def geometric(law: FlexureLaw, bent: FlexureState, force: Array, moment: Array) -> Array:
-    """Compute the stiffness (l, b, 12, 12) due to rotation of the arms under the end forces (docs/nonlinear.md, 18)."""
+    """Compute the stiffness (l, b, 12, 12) that results from rotation of the arms under the end forces (docs/nonlinear.md, 18)."""
     scale = (law.rigidity / law.length)[:, None, None]
     force_hat = cross_matrix(_rotate(bent.frame, force) * scale / law.length[:, None, None])
     moment_hat = cross_matrix(_rotate(bent.frame, moment) * scale)

@@ -18,10 +18,10 @@ class Sum(Protocol):
     """Protocol for matrices of b cases that are assembled by adding blocks."""
 
     def add(self, rows: slice, columns: slice, block: Array) -> None:
-        """Add a block (b, r, c)."""
+        """Add a block (b, r, c) of every case at r `rows` and c `columns`."""
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add blocks (l, b, r, c), each at its first row and column (l,)."""
+        """Add l blocks (l, b, r, c), each at its first row and first column, `rows` (l,) and `columns` (l,)."""
 
     def total(self, kept: Array) -> Array | tuple[Any, ...]:
         """Return the matrix with only the rows and columns `kept`: (b, n, n), or sparse matrices."""
@@ -35,11 +35,11 @@ class Dense:
         self._whole = np.zeros((cases, size, size))
 
     def add(self, rows: slice, columns: slice, block: Array) -> None:
-        """Add a block (b, r, c)."""
+        """Add a block (b, r, c) of every case at r `rows` and c `columns`."""
         self._whole[:, rows, columns] += block
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add blocks (l, b, r, c), each at its first row and column (l,)."""
+        """Add l blocks (l, b, r, c), each at its first row and first column, `rows` (l,) and `columns` (l,)."""
         high, wide = blocks.shape[-2:]
         for row, column, block in zip(rows, columns, blocks, strict=True):
             self._whole[:, row : row + high, column : column + wide] += block
@@ -57,12 +57,12 @@ class Blocks:
         self._found: list[tuple[Array, Array, Array]] = []
 
     def add(self, rows: slice, columns: slice, block: Array) -> None:
-        """Add a block (b, r, c)."""
+        """Add a block (b, r, c) of every case at r `rows` and c `columns`."""
         shape = (1, self._cases, rows.stop - rows.start, columns.stop - columns.start)
         self.spread(np.array([rows.start]), np.array([columns.start]), np.broadcast_to(block, shape))
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add blocks (l, b, r, c), each at its first row and column (l,)."""
+        """Add l blocks (l, b, r, c), each at its first row and first column, `rows` (l,) and `columns` (l,)."""
         self._found.append((rows, columns, blocks))
 
     def total(self, kept: Array) -> tuple[Any, ...]:

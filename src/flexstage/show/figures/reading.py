@@ -34,8 +34,8 @@ def reading(figure: Any, spots: Iterable[Spot] = ()) -> str:
     """Describe the panels of a drawn figure as JSON: positions in points, axes, and labelled curves.
 
     A curve without a label gets the label of the curve with equal style in the same column; if there is none, the curve is left out. A
-    panel without a name gets the name of a panel in the same row. Equal abscissae are listed once, in `over`; the `x` of a curve is an
-    index into `over`.
+    panel without a name gets the name of a panel in the same row. Equal arrays of abscissae are listed once, in `over`; the `x` of a curve
+    is the index of its array in `over`.
 
     >>> from flexstage.show.figures.style import canvas
     >>> figure = canvas(1.0, 1.0)

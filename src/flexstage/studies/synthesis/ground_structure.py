@@ -91,7 +91,7 @@ class Block:
 
     @property
     def scale(self) -> Array:
-        """Sizes (6,) of twists with equal displacements: translations of 1 m, rotations that move a point at the mean half size by 1 m."""
+        """Sizes (6,) of twists with equal displacements: translations of 1 m, rotations of 1 m divided by the block's mean half size."""
         return np.repeat([1.0, 1.0 / float(np.mean(self.half))], 3)
 
 

@@ -176,8 +176,8 @@ def _ahead(before: Point | None, last: Point) -> float:
 def step_along(loading: ProportionalLoading, last: Point, length: float) -> Point | None:
     """Compute the next equilibrium at a step length, or `None` without convergence (Riks 1979, see `continuation`).
 
-    If the slope is a large fraction of the largest slope so far, corrections keep the load factor constant. On a flatter path, corrections
-    are normal to the step, and the factor is an unknown.
+    If the slope is at least 0.3 of the steepest slope so far, corrections keep the load factor constant. On a flatter path, corrections are
+    normal to the step, and the factor is an unknown.
     """
     scale, options, model = loading.scale, loading.options, loading.model
     whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose

@@ -92,8 +92,8 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     Constant loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can also be part of
     `load`: their values then grow with the factor. The name `weight` in `load` stands for the weight of the stage; it requires the argument
     `weight` = 0. The name `stated forces` stands for the forces and preloads of the description; it requires `stated` = 0. Other
-    coordinates in `hold` keep their values. For stability, coordinates of `hold` that are not in `locked` (default: all) are free, and
-    their reactions act as loads.
+    coordinates in `hold` keep their values. Stability is evaluated with the coordinates in `locked` fixed (default: all coordinates in
+    `hold`); the others are free, and their reactions act as loads.
 
     The path starts without load, or from the `known` state under the full load. Arc-length steps resolve the path's curvature and the
     change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (to a relative

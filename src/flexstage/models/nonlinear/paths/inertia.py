@@ -24,7 +24,7 @@ def kept_rows(model: Nonlinear, held: Sequence[str], locked: Sequence[str]) -> l
 def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
     """Count the independent motions (b,) that decrease the potential energy.
 
-    The count is the number of negative eigenvalues, without those due to constraints and multipliers.
+    The count is the number of negative eigenvalues of the stage and of its flexures, without those due to constraints and multipliers.
     """
     count = _descents(whole, kept, model.freedoms) - (len(kept) - model.freedoms)
     for bent in whole.bent:
