@@ -44,8 +44,8 @@ def scaled_size(matrix: Array, logs: Array) -> float:
 def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
     """Minimise the largest singular value of e^{d_i} M_ij e^{-d_j} over d.
 
-    Any d gives an upper bound of the structured singular value mu. The logarithm of the singular value is convex in d. At the minimum,
-    several singular values may coincide; therefore the smooth norms (sum over k of sigma_k^2p)^(1/2p) are minimised instead, with
+    Any d gives an upper bound of the structured singular value mu. The logarithm of the largest singular value is convex in d. At the
+    minimum, several singular values may coincide; therefore the smooth norms (sum over k of sigma_k^2p)^(1/2p) are minimised instead, with
     increasing p. The derivative of the logarithm of a norm with respect to d_i is the sum over k of w_k (|u_ik|^2 - |v_ik|^2), with the
     left and right singular vectors u_k and v_k of the scaled matrix, and weights w_k proportional to sigma_k^2p.
 

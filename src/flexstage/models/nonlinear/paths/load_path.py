@@ -222,7 +222,7 @@ def continuation(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Compute equilibria along the factor on `load` by arc-length continuation, past limit points.
+    """Compute equilibria under `load` times a varying factor by arc-length continuation, past limit points.
 
     `step` is the maximum norm of the body motion between two points (translations divided by the longest flexure length, rotations in
     radians); steps are shorter on a curved path. The path has the length `points` times `step`, and ends earlier if there is no further
@@ -259,7 +259,7 @@ def post_buckling_path(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Compute the post-buckling path: equilibria on the branch at the first bifurcation of `load`, along the factor on the load.
+    """Compute the post-buckling path: equilibria on the branch at the first bifurcation under `load` times a varying factor.
 
     The first state is the last stable state before the bifurcation. From the first to the second state, the stage moves in the direction of
     the buckling mode `Critical.shape`; with `side` -1, in the opposite direction. `step` and `points` have the same meaning as in
@@ -291,7 +291,7 @@ def beyond(
     points: int = 60,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Compute equilibria beyond a critical point, along the load factor: on the branch of a bifurcation, or past a limit point or bend.
+    """Compute equilibria beyond a critical point, at varying load factors: on the branch of a bifurcation, or past a limit point or bend.
 
     `critical` is the result of `critical_load` for the load. `side`, `step` and `points` have the same meaning as in `post_buckling_path`.
     Past a limit point or a bend, the path has only one side.
