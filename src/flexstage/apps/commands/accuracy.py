@@ -48,7 +48,7 @@ Commands: TypeAlias = Annotated[
         "--command",
         "AXIS=VALUE",
         "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. "
-        "Default: the required strokes; without required strokes, the command budget uses the single-axis strokes.",
+        "Default: the strokes that the design requires; if it requires none, flexstage budget uses the stroke along each axis alone.",
     ),
 ]
 
@@ -121,8 +121,8 @@ def drift(
 ) -> CommandResult:
     """Compute thermal drift of platform, points and gauges.
 
-    Prints drift per kelvin of uniform temperature change and per K/m of temperature gradient, by the lumped model. Significant permanent
-    loads are included.
+    Prints drift per kelvin of uniform temperature change and per K/m of temperature gradient, by the lumped model. If a permanent
+    load such as the weight is significant, the model includes its effect on stiffness.
     """
     stands = command_stage(mechanism, OperatingPointOptions())
     found = drifting.drift(mechanism, stands.links, ground=ground)

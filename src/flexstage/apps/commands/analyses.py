@@ -253,7 +253,7 @@ def response(
             "Output: motion (chuck.x), gauge (S1) or resultant (B4/pivot.mz). Default: platform and gauges. Repeatable.",
         ),
     ] = None,
-    band: Annotated[tuple[str, str] | None, band_option("1/50 of the first to twice the twelfth natural frequency")] = None,
+    band: Annotated[tuple[str, str] | None, band_option("f1/50 to 2 f12 (f1, f12: first and twelfth natural frequency)")] = None,
     input_asd: InputDensities = None,
     place: OperatingPointOptions,
 ) -> CommandResult:

@@ -58,9 +58,10 @@ class Prefilter(CheckedFields):
 
 
 def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates) -> System:
-    """Add one prefilter per loop to a controller: with S = `sense` (k, f), S^+ F S r replaces r, and e + (S^+ F S - 1) r replaces e.
+    """Add one prefilter per loop to a controller: the filtered reference S^+ F S r replaces the reference r.
 
-    Adds inputs `reference.<c>` if the controller has none.
+    F are the prefilters, S = `sense` (k, f) maps to loop coordinates, and S^+ is its pseudoinverse. The error relative to the filtered
+    reference, e + (S^+ F S - 1) r, replaces the error e. Adds inputs `reference.<c>` if the controller has none.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates

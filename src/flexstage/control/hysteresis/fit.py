@@ -65,7 +65,9 @@ def _extrapolate(knots: Array, values: Array) -> tuple[Array, Array]:
 
 
 def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float = 0.5) -> Form:
-    """Choose `plays` thresholds, evenly spaced from 0 to below the fraction `reach` of the range, and an envelope of `pieces` equal pieces.
+    """Choose the thresholds of a number `plays` of plays, and an envelope of `pieces` pieces of equal width.
+
+    The thresholds are evenly spaced, from 0 up to but not including `reach` times the voltage range.
 
     >>> form_of((0.0, 1000.0), 4, 1).thresholds.tolist()
     [0.0, 125.0, 250.0, 375.0]

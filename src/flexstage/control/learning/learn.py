@@ -31,7 +31,7 @@ BEYOND = Heading("beyond the band", digits=3)
 
 @dataclass(frozen=True, eq=False)
 class RobustBand:
-    """Robust learning `band`. `contraction` is the largest ||Q (I - gain P P^^-1)|| over the band's frequencies (see `robust_band`)."""
+    """Robust learning `band`. `contraction` is the largest ||Q (I - gain P P_m^-1)|| in the band; Q is its low-pass (see `robust_band`)."""
 
     band: Band
     contraction: float
@@ -88,11 +88,11 @@ class LearningResult:
 
 
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
-    """Find the frequency band in which ||I - gain P P^^-1|| is at most 0.8, for relative mode shifts up to `spread`.
+    """Find the frequency band in which ||I - gain P P_m^-1|| is at most 0.8, for relative mode shifts up to `spread`.
 
-    P are the loop's responses with shifted modes; P^ are the model's responses. In both, rotations are scaled to lengths. If the norm is
+    P are the loop's responses with shifted modes; P_m are the model's responses. In both, rotations are scaled to lengths. If the norm is
     below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson, International Journal of Control 75 (2002)
-    1114). The band also ends where ||P^^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
+    1114). The band also ends where ||P_m^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
     """
     plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)
@@ -144,7 +144,10 @@ class LearningSettings:
 
 
 def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
-    """Learn the command path + d for a true path (n, f) at rest at both ends. After each pass, d becomes Q (d + gain P^^-1 e).
+    """Learn the command path + d for a true path (n, f) at rest at both ends.
+
+    After each pass, Q (d + gain P_m^-1 e) replaces d: e is the error of the pass, P_m the model's response from reference to measured pose,
+    and Q the low-pass of the robust band.
 
     `run(path, number)` simulates pass `number` along a commanded path, and returns the measured poses (n, f). Raises the `DesignError` of
     `robust_band`.

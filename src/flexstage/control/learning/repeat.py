@@ -99,7 +99,7 @@ def _amplification(kept: Array, left: Array, scale: Array) -> float:
 
 
 def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: int, early: float) -> tuple[Array, Array]:
-    """Taps of Q and of Q gain P^^-1 from -`reach` to `reach` samples, advanced by a fraction of a sample, with windowed ends."""
+    """Taps of Q and of Q gain P_m^-1 from -`reach` to `reach` samples, advanced by a fraction of a sample, with windowed ends."""
     step = closed.step or 1.0
     count = 2 ** int(np.ceil(np.log2(_FINEST * (2 * reach + 1))))
     lines = np.fft.rfftfreq(count, step)

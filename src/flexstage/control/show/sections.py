@@ -256,12 +256,12 @@ def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
     if test.learned is not None:
         taught = test.learned
         figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "number of learned passes", taught.noise)
-        caption = f"Error of each pass in the band up to {number(taught.band, 4)} Hz. Dotted: non-repeating component."
+        caption = f"Error up to {number(taught.band, 4)} Hz, for each pass. Dotted: non-repeating component."
         yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by pass"), caption)
     if test.repeated is not None:
         seen = test.repeated
         figure = lesson_figure(seen.rms, seen.coordinates, seen.units, "number of previous periods")
-        caption = f"Error of each period in the band up to {number(seen.band, 4)} Hz."
+        caption = f"Error up to {number(seen.band, 4)} Hz, for each period."
         yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by period"), caption)
 
 

@@ -88,9 +88,10 @@ def loop(given: Plant, controller: System) -> Loop:
 
 
 def pose_controller(controller: System, coordinates: Coordinates, sense: Array | None = None) -> System:
-    """Return the controller with two groups of inputs: first the feedback errors, which replace pose and error, then the references.
+    """Return the controller with two groups of inputs: feedback errors, then references.
 
-    With the matrix `sense` (k, c), which maps to loop coordinates, both groups of inputs are in loop coordinates.
+    Each feedback error replaces the controller's inputs `error` and, with the opposite sign, `pose`. With the matrix `sense` (k, c), which
+    maps to loop coordinates, both groups of inputs are in loop coordinates.
     """
     names, known = coordinates.names, controller.input_names
     entry = np.zeros((2, len(known), len(names)))

@@ -202,9 +202,11 @@ def farthest(spec: TuningSpec) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Search data: `plants` (v, f, k, k) from loop commands to poses at `frequencies` (v, f); `slow` (w, h, k, k) at the step `lines` (h,).
+    """Search data of v variants: `plants` (v, f, k, k), the responses from k loop commands to poses at `frequencies` (v, f).
 
-    Each plant has the frequencies of the model times (1 + offset), so that its modes are at the same indices. `lines` are evenly spaced.
+    `slow` (w, h, k, k) are the responses at the frequencies `lines` (h,), for step responses: only of the w variants with mode shifts
+    within the spread. Each plant has the frequencies of the model times (1 + offset), so that its modes are at the same indices. `lines`
+    are evenly spaced.
 
     `disturbed` (f, k, d) is the amplitude of each loop's pose due to each floor motion, `heard` (f, k) due to gauge noise. The two
     amplitudes are weighted for sums of squares over frequency. `alike` maps each loop to the first equal loop. `allowed` is the limit of

@@ -48,7 +48,7 @@ class Design:
 
     @property
     def frequencies(self) -> Array:
-        """Frequencies of all rows: sqrt(mean f^2) [Hz]."""
+        """Frequency of each row [Hz]: sqrt(mean f^2) over the modes of the row."""
         means = [np.mean(self.solved.values[list(modes)]) for modes in self.modes]
         return np.sqrt(np.array(means)) / (2.0 * np.pi)
 

@@ -58,7 +58,12 @@ class Peak:
     TABLE: ClassVar[Layout] = Layout(
         "Peaks not confirmed as modes",
         "frequency outputs width resolution chance reason",
-        notes=("Without a mode, such a peak has this probability. A mode requires at most 1e-9, and lines finer than its width.",),
+        notes=(
+            (
+                "Without a mode, such a peak has this probability. A mode requires a probability of at most 1e-9, and a width above the "
+                "line spacing."
+            ),
+        ),
     )
 
     frequency: Annotated[float, FREQUENCY, Heading(digits=5)]
