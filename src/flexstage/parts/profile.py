@@ -140,7 +140,7 @@ class Hyperbolic(_Conic):
 
     @property
     def steepness(self) -> Number:
-        """Squared ratio of a to the semi-axis along the hinge: c (c + 2 q) / q^2."""
+        """Squared ratio of half the length to the semi-axis along the hinge: c (c + 2 q) / q^2, c = `across`, q = `semi_axis`."""
         share = self.across / self.semi_axis
         return share * (share + 2.0)
 

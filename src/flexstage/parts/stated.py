@@ -53,8 +53,8 @@ def halves(inertia: Array) -> Array:
 def line_mass(mass: Number, length: Number) -> Array:
     """Compute the consistent mass (..., 12, 12) of a line of uniform mass between its ends, at +-L/2 from the centre.
 
-    Linear interpolation v = (1 - s) v_a + s v_b gives m/3 at each end and m/6 coupling. A spring fixed at one end thus adds a third of its
-    mass to its other end.
+    The velocity is interpolated linearly between the ends: a line of mass m therefore has m/3 at each end and a coupling of m/6. A spring
+    fixed at one end thus adds a third of its mass to its other end.
 
     >>> line_mass(6.0, 0.0)[0, [0, 6]].tolist()
     [2.0, 1.0]
@@ -140,7 +140,7 @@ def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
 def negative_part(matrix: Array, lengths: Array) -> Array:
     """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (6, 6), for the first design.
 
-    `lengths` (6,) scale the coordinates.
+    Rows and columns are divided by `lengths` (6,) before negative eigenvalues are separated, and multiplied by `lengths` afterwards.
 
     >>> negative_part(np.diag([-2.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.ones(6)).diagonal()[:2].tolist()
     [2.0, 0.0]

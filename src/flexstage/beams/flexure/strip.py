@@ -33,8 +33,9 @@ STRETCH_TWO, STRETCH_FOUR = 1.0 / 720.0, 1.0 / 1296.0
 class Fields:
     """Modes of the fields a2 and a4 of a leaf with one amplitude per mode (docs/nonlinear.md, 11).
 
-    Lengths are divided by L, energies by D b / L. `form` (..., e, e) is the quadratic form of the e amplitudes. `values` (..., 2, e, n) are
-    a2 and a4 at the n points of a rule. `coupling` (..., 2, e, k) are the integrals of a2 and a4 times P_k, for all k < n.
+    Lengths are divided by the leaf's length L, energies by D b / L with the plate stiffness D and the width b. `form` (..., e, e) is the
+    quadratic form of the energy in the e amplitudes. `values` (..., 2, e, n) are a2 and a4 at the n points of a rule. `coupling` (..., 2,
+    e, k) are the integrals of a2 and a4 times the Legendre polynomials P_k, for all k < n.
     """
 
     form: Array
@@ -58,7 +59,9 @@ def _products() -> tuple[Array, Array, Array]:
 
 
 def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
-    """Build the quadratic form (120, 120) of fields a2, a4, psi2, psi4 of a strip of unit length, divided by D b (docs/nonlinear.md, 10).
+    """Build the quadratic energy form (120, 120) of a clamped strip of unit length (docs/nonlinear.md, 10).
+
+    The form is for the fields a2, a4 (amplitudes) and psi2, psi4 (rotations). It is divided by the plate stiffness times the width.
 
     >>> form = stiffness(0.5, 0.005, 0.3)
     >>> form.shape, bool(np.allclose(form, form.T))
@@ -84,7 +87,7 @@ def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
 
 @functools.lru_cache(maxsize=256)
 def fields(width: float, thickness: Number, poisson: Number, size: int, loads: tuple[int, int] = LOADS) -> Fields:
-    """Compute the field modes of a leaf: responses of the strip to line loads P_k on a2 and a4.
+    """Compute the modes of a leaf's fields: responses of the strip to line loads on a2 and a4 that vary as Legendre polynomials.
 
     `width` and `thickness` are divided by the length. `size` is the number of points of the rule.
 

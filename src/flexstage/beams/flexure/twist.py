@@ -22,14 +22,17 @@ _CUT = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Functions of s at p points: `values` (..., k, p), and `slopes`, the derivatives with respect to s."""
+    """Functions of the place s from 0 to 1, at p points: `values` (..., k, p), and `slopes`, the derivatives with respect to s."""
 
     values: Array
     slopes: Array
 
 
 def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
-    """Compute the twist rates P_k - cosh(c u) / cosh(c) of restrained warping (docs/nonlinear.md, 9); sinh if k is odd, u = 2 s - 1.
+    """Compute the shapes of the twist rate under restrained warping (docs/nonlinear.md, 9).
+
+    The shapes are P_k - cosh(c u) / cosh(c) for even k, and P_k - sinh(c u) / sinh(c) for odd k. P_k are the Legendre polynomials of u = 2
+    s - 1, with the place s from 0 to 1.
 
     `decay` c (...) is half the length times sqrt(G J / (E C_w)). The computation does not overflow for large c.
 
@@ -71,10 +74,11 @@ def _along() -> tuple[Array, Array, Array]:
 
 
 def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
-    """Compute how much curvature of the section reduces the twist energy: a quadratic form (..., k, k), divided by D b / L.
+    """Compute how much bending of the section reduces the twist energy: a quadratic form (..., k, k).
 
-    `width` is divided by the length; `twist` has the twist modes at the `FINE` points. In addition to w_xx = - k_x' z and w_xz = - k_x, the
-    plate bends by a_j phi_j with j = 3, 5, 7; a_j and a_j' are zero at the clamps. The fields a_j minimise the energy for a given twist
+    The form is divided by D b / L, with the plate stiffness D, the width b and the length L. `width` is divided by the length; `twist` has
+    the twist modes at the `FINE` points. In addition to the curvatures w_xx = - k_x' z and w_xz = - k_x of the twist k_x, the plate bends
+    in the shapes a_j phi_j with j = 3, 5, 7; a_j and a_j' are zero at the clamps. The fields a_j minimise the energy for a given twist
     (docs/nonlinear.md, 9).
     """
     width_wise, weights = across(_DEGREES), gauss(FINE).weights

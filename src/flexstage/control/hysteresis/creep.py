@@ -47,7 +47,9 @@ class LogCreep(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Creep:
-    """Creep operator y = g_0 u + sum_i g_i s_i, tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i, `times` tau_i [s] (axes, m).
+    """Creep operator from an input u to y = g_0 u + sum_i g_i s_i, with the states s_i of first-order lags: tau_i ds_i/dt + s_i = u.
+
+    `instant` (axes,) is g_0; `gains` and `times` [s] (axes, m) are g_i and tau_i.
 
     The operator acts on the stroke between the hysteresis and the stage (Hammerstein model). With u constant over a sample T the exact
     state update is s_i <- s_i + (1 - e^{-T/tau_i}) (u - s_i), after y is computed. For a single axis the shape (m,) is also accepted.

@@ -95,7 +95,7 @@ def play_outputs(inputs: Array, thresholds: Array) -> Array:
 
 
 def known_from(inputs: Array, thresholds: Array) -> int:
-    """Find the first sample at which the input range is twice the largest threshold: no play then depends on its initial state.
+    """Find the first sample up to which the inputs span twice the largest threshold: no play then depends on its initial state.
 
     >>> known_from(np.array([0.0, 1.0, 5.0, 3.0, 0.0]), np.array([0.0, 2.0]))
     2

@@ -21,15 +21,16 @@ _TINY = 1e-300
 class BoucWen(Hysteresis):
     """Bouc-Wen hysteresis w = offset + d v - h,  dh/dt = A dv/dt - beta |dv/dt| h - gamma dv/dt |h|, each (axes,); initially h(v = 0) = 0.
 
-    (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) `gain` d and `lag` A in m/V, `beta` and `gamma` in 1/V. The
-    model is rate independent. For a monotonic voltage change e = |dv|, s = sign(dv) and g = s h: dg/de = A - (beta - gamma) g for g < 0,
-    and A - (beta + gamma) g for g > 0. The exact solution with c = beta - gamma and C = beta + gamma is
+    (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) Here w is the stroke, v the voltage and h the lag; `gain` d and
+    `lag` A are in m/V, `beta` and `gamma` in 1/V. The model is rate independent. For a monotonic voltage change e = |dv|, s = sign(dv) and
+    g = s h: dg/de = A - (beta - gamma) g for g < 0, and A - (beta + gamma) g for g > 0. The exact solution with c = beta - gamma and C =
+    beta + gamma is
 
         g < 0:   g <- g e^{-c e} + A (1 - e^{-c e})/c   up to e* = ln(1 - c g/A)/c, where g reaches 0
         g >= 0:  g <- g e^{-C e} + A (1 - e^{-C e})/C   for the remaining change
 
-    The state (axes, 2) is (v, h). Inner loops do not close, unlike in every Prandtl-Ishlinskii model. Raises `DesignError` unless -beta <
-    gamma <= beta, because loops would otherwise not dissipate energy, and if the stroke would fall with rising voltage.
+    The state (axes, 2) is (v, h). Inner loops do not close, unlike in every Prandtl-Ishlinskii model. Raises `DesignError` if gamma is at
+    most -beta or above beta, because loops would not dissipate energy, or if the stroke would fall with rising voltage.
     """
 
     gain: Array
@@ -88,9 +89,9 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
 def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.0, skew: float = 0.5) -> BoucWen:
     """Construct a Bouc-Wen stack of this `stroke` [m] over `volts`, with a settled major loop of relative `width` (0.15: 15 %).
 
-    `sharpness` is beta times the range: for a large value, h saturates early. `skew` is gamma/beta. All loops scale with the lag: lag and
-    gain therefore follow from two linear equations. Raises `DesignError` if the stroke of the constructed loop would not rise with the
-    voltage everywhere.
+    `sharpness` is the parameter beta times the voltage range: if it is large, the lag h saturates early. `skew` is gamma/beta. All loops
+    scale with the lag: lag and gain therefore follow from two linear equations. Raises `DesignError` if the stroke of the constructed loop
+    would not rise with the voltage everywhere.
 
     >>> model = bouc_wen(150e-6, (0.0, 1000.0), 0.15)
     >>> loop = major_loop(model, (0.0, 1000.0), count=101)

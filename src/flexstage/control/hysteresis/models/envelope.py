@@ -22,8 +22,8 @@ def freeze_rows(record: Any, *names: str) -> None:
 class Envelope:
     """Piecewise linear function of each axis, through `values` (axes, m) at `knots` (axes, m), m >= 2, with extrapolated ends.
 
-    With slopes s_j = (y_{j+1} - y_j)/(k_{j+1} - k_j), the value is g(x) = y_0 + s_0 (x - k_0) + sum_{j=1}^{m-2} (s_j - s_{j-1}) max(x -
-    k_j, 0). Generated code uses the same formula.
+    With knots k_j, values y_j and slopes s_j = (y_{j+1} - y_j)/(k_{j+1} - k_j), the function is g(x) = y_0 + s_0 (x - k_0) +
+    sum_{j=1}^{m-2} (s_j - s_{j-1}) max(x - k_j, 0). Generated code uses the same formula.
 
     The inverse of an ascending function swaps knots and values. An envelope of shape (m,) serves any number of axes. Raises `DesignError`
     for knots that do not ascend, different shapes, and values that are not finite.

@@ -17,7 +17,8 @@ from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlin
 def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
     """Compute the model that inverts `model` exactly, sample by sample: plays between the inverse envelopes.
 
-    With P_j = p_0 + ... + p_j (the slope of the virgin curve beyond r_j), the thresholds, weights and envelopes of the inverse model are
+    The model has thresholds r_i, weights p_i, and envelopes a before and b after the plays; P_j = p_0 + ... + p_j is the slope of the
+    virgin curve beyond r_j. The thresholds s_j, weights q_j and envelopes a' and b' of the inverse model are
 
         s_j = sum_{i<=j} p_i (r_j - r_i),   q_0 = 1/p_0,   q_j = -p_j / (P_j P_{j-1}),   a' = b^-1,   b' = a^-1
 
@@ -39,7 +40,7 @@ def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
 
 
 def inverse_state(model: PrandtlIshlinskii, state: Array) -> Array:
-    """Compute the state (axes, n) of `inverse(model)` for a state of the model: z'_j = P_j z_j + sum_{i>j} p_i z_i.
+    """Compute the state (axes, n) of `inverse(model)`: z'_j = P_j z_j + sum_{i>j} p_i z_i, from the model's state z (see `inverse`).
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> state, there = model.step(model.start(np.array([500.0])), np.array([400.0]))

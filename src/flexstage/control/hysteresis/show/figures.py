@@ -17,7 +17,7 @@ _POINTS = 900
 
 
 def stack_figure(test: StackTest) -> Any:
-    """Plot stroke over voltage (record and model), model error [% of stroke], and the inverse model's voltage over the applied voltage.
+    """Plot stroke (record and model), model error [% of stroke] and the inverse model's voltage, each against the applied voltage.
 
     >>> from flexstage.control.hysteresis.example import example_test
     >>> len(stack_figure(example_test()).axes)
