@@ -35,7 +35,8 @@ def cruciform_beam(part: Cruciform, material: Material) -> Beam:
 
     For thin leaves, the torsional stiffness approaches Vlasov's (Thin-Walled Elastic Beams, 1961):
 
-    K = G J / L / (1 - tanh(k L / 2) / (k L / 2)), k^2 = G J / (E C_w). The restrained contraction at the rigid ends is neglected.
+    K = G J / L / (1 - tanh(k L / 2) / (k L / 2)), k^2 = G J / (E C_w), with the length L, the torsion constant J and the warping constant
+    C_w. The restrained contraction at the rigid ends is neglected.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> hinge = Cruciform("steel", length=0.03, thickness=0.001, width=0.01)

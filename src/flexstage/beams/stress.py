@@ -48,7 +48,8 @@ def has_section(part: Part) -> bool:
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
     """Compute the largest stress in a part whose second end carries `wrench` (..., 6) [N, N m], taken at the centre in the link frame.
 
-    The stress is computed by beam theory at every station from end to end: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z.
+    The stress is computed by beam theory at every station x from end to end. Axial force and bending moments follow from force F and moment
+    m of the wrench: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z. The section has thickness t, width b (round: diameter d) and area A.
 
     sigma = |N|/A + |M_z| t/(2 I_z) + |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)).
 

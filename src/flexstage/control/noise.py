@@ -36,9 +36,10 @@ class NoiseBudget(InNotebook):
     """Noise budget: mean squares of outputs, at the samples. The contributions of the uncorrelated sources add up.
 
     `squares` (p, k) [unit^2] has a row for each of `outputs` and a column for each of `sources`. `density` (f, p, k) is the one-sided
-    density [unit^2/Hz] at `frequencies` (f,) [Hz]. Floor vibration is at its true frequencies; white sources are limited to half the
-    sampling rate, with aliasing. `changes` (g,) are the rms changes of the readings of `gauges` between samples, before rounding, in
-    resolution steps (NaN: no rounding). `notes` list the assumptions and missing data of each kind of source.
+    density [unit^2/Hz] at `frequencies` (f,) [Hz]. The density of floor vibration is at its true frequencies. The densities of white
+    sources include aliasing, and are zero above half the sampling rate. `changes` (g,) are the rms changes of the readings of `gauges`
+    between samples, before rounding, in resolution steps (NaN: no rounding). `notes` list the assumptions and missing data of each kind of
+    source.
     """
 
     outputs: Annotated[tuple[Channel, ...], INNER]
@@ -64,7 +65,7 @@ class NoiseBudget(InNotebook):
 
     @property
     def rms(self) -> Annotated[Array, Axes("output_names")]:
-        """Rms (p,) of each output, with all sources."""
+        """Rms value (p,) of each output, due to all sources."""
         return np.sqrt(np.sum(self.squares, axis=1))
 
     @property
@@ -109,11 +110,11 @@ def noise_budget(
 
     The default outputs are the platform's six motions relative to the ground. `floor` maps ground motions (`ground.x`) to one-sided
     densities. Gauss quadrature integrates floor vibration, noise of leg sensors and noise of amplifiers without lag over `band` (low, high)
-    [Hz]. All other sources are white: Lyapunov's equation gives their mean squares over all frequencies (`white_system`). Between gauges
-    and hold a ground motion e^{j omega t} is sampled as e^{j omega k T}. At the samples, the response to a ground motion w is y = [G_y(j
-    omega) + S_y(e^{j omega T}) G_gap(j omega)] w. G are the stage's responses, and S_y is the response of the sampled loop to gauge noise.
-    Aliasing is exact, also above half the sampling rate. Raises `DesignError` for an unstable loop, with its growth rate, and for a
-    continuous loop.
+    [Hz]. All other sources are white: Lyapunov's equation gives their mean squares over all frequencies (`white_system`). The gauges sample
+    a ground motion e^{j omega t} as e^{j omega k T}, with the sampling period T. At the samples, the response to a ground motion w is y =
+    [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w. G_y and G_gap are the stage's responses at the outputs and at the gauges, and S_y
+    is the response of the sampled loop's outputs to gauge noise. Aliasing is exact, also above half the sampling rate. Raises `DesignError`
+    for an unstable loop, with its growth rate, and for a continuous loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_budget(integral_loop(), {"ground.x": Spectrum(1e-18)}, (0.1, 1000.0), ("relative.x",))
@@ -184,7 +185,7 @@ def _white_density(white: System, sources: tuple[Source, ...], frequencies: Arra
 
 
 def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
-    """Collect by plant input the spectra to integrate over a band: floor, amplifiers without lag, and leg sensors.
+    """Return, by plant input, the spectra that are integrated over a band: floor, amplifiers without lag, and leg sensors.
 
     >>> from flexstage.control.example import integral_loop
     >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))

@@ -44,7 +44,7 @@ _Deformation: TypeAlias = tuple[_Shift, _Shift, _Shift, _Turn, _Turn, _Turn]
 
 
 class BetweenFaces(StrokeActuator):
-    """Stroke actuator with the force f = k (dx - s u): k is the 6x6 stiffness about its centre, s the free deformation per stroke u."""
+    """Stroke actuator with the force f = k (dx - s u): relative motion dx, stroke u, free deformation s per stroke, 6x6 stiffness k."""
 
     diagonal: _Diagonal | None
     matrix: _Matrix | None
@@ -80,7 +80,7 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def blocking_force(self) -> Number:
-        """Blocked force along x at full stroke: (k s)_x times the stroke [N]."""
+        """Blocked force along x at full stroke [N]: x component of the stiffness times the free deformation."""
         return (self.between @ self.free_deformation[..., None])[..., 0, 0] * self.stroke
 
     @property
@@ -116,7 +116,7 @@ def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
 
 @dataclass(frozen=True, eq=False)
 class Amplified(BetweenFaces, ChargedActuator):
-    """Amplified piezo actuator between its two faces: f = k (dx - s u).
+    """Amplified piezo actuator between its two faces: f = k (dx - s u) (see `BetweenFaces`).
 
     `stroke` is the full free stroke of the output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
     relative to the first at full stroke (default: the stroke along x). The free deformation can describe contracting actuators and
@@ -147,7 +147,7 @@ class Amplified(BetweenFaces, ChargedActuator):
 
     @property
     def free_deformation(self) -> Array:
-        """Free deformation (..., 6) for a unit stroke: `deformation` over `stroke`, or by default a unit translation along x."""
+        """Free deformation (..., 6) for a unit stroke: `deformation` divided by `stroke`, or by default a unit translation along x."""
         if self.deformation is None:
             return np.eye(6)[0]
         return stack(self.deformation) / np.asarray(self.stroke)[..., None]

@@ -82,7 +82,10 @@ class Cross(Section):
         return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return T t / J on the faces of the leaves plus the shear of bending strips, without stress concentration at the inner corner."""
+        """Return the shear stress [Pa] of a torque [N m], without stress concentration at the inner corner.
+
+        It is the sum of Saint-Venant's stress on the faces of the leaves and the shear stress of the leaves, which bend as strips.
+        """
         strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
         return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
 
@@ -91,6 +94,7 @@ def cross(thickness: Number, width: Number) -> Cross:
     """Return the plus-shaped section of leaves of `thickness` and `width`.
 
     The shear factor k follows from the energy of Jourawski's shear stress V Q(y) / (I b(y)): k = A / I^2 times the integral of Q^2 / b(y).
+    V is the shear force, Q the first and I the second moment of area, and b(y) the width at y.
     """
     half, near = 0.5 * width, 0.5 * thickness
     plain = Cross(width, width, thickness=thickness)

@@ -39,7 +39,7 @@ DUTY = Bound(low=0.0, high=1.0, open_low=True)
 
 
 class Supply(Enum):
-    """Drive of the coil: a current amplifier, or a voltage amplifier with the back-EMF k_f v of the coil's motion."""
+    """Drive of the coil: a current amplifier, or a voltage amplifier, with a back-EMF in proportion to the coil's velocity."""
 
     CURRENT = "current"
     VOLTAGE = "voltage"
@@ -78,7 +78,7 @@ class Coil(ThrustActuator):
 
     @property
     def viscous_damping(self) -> Number:
-        """Damping along or about x [N s/m, N m s/rad]; a voltage drive adds the back-EMF term k_f^2 / R.
+        """Damping along or about x [N s/m, N m s/rad]; a voltage drive adds the back-EMF term k_f^2 / R (see `VoiceCoil`).
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Supply.VOLTAGE).viscous_damping
         21.0
@@ -186,8 +186,9 @@ class VoiceCoil(Coil):
 
     `mass` is the coil's mass, on the body selected by `coil`; `magnet_mass` is the magnet's mass, on the other body. Both masses are point
     masses at the link's centre. `stiffness` is the magnets' stiffness along x (negative: unstable about the middle). `damping` is the
-    coil's damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the range of
-    motion along x with a constant `force_constant`, half of the range on each side of the middle.
+    coil's damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R, with the force constant k_f
+    and the resistance R. `travel` is the range of motion along x with a constant `force_constant`, half of the range on each side of the
+    middle.
 
     `temperature_rise` is the largest permitted temperature difference between coil and surroundings; `thermal_resistance` is the thermal
     resistance between them. `duty` is the duty cycle of the current in short use. The input is the static current, which is V/R for a

@@ -159,11 +159,11 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Shin & Moon, equation 28).
 
-    A platform mode is a mode at which the sum of the modal compliances reaches a tenth of the platform's static compliance in one more
-    direction (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that
-    shapes align with the platform's axes. Shapes without platform motion align with the coordinates that move most. The result contains all
-    computed modes; `limit` [Hz] affects only `Modes.listed`. Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900
-    degrees of freedom), only about 30 of the lowest modes are computed.
+    The modal compliances are summed in ascending order of frequency. A platform mode is a mode with which this sum reaches a tenth of the
+    platform's static compliance in one more direction (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The
+    basis of a cluster is rotated so that shapes align with the platform's axes. Shapes without platform motion align with the coordinates
+    that move most. The result contains all computed modes; `limit` [Hz] affects only `Modes.listed`. Displacements are small. For a large
+    stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -221,7 +221,8 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
 def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
     """Return groups of indices of ascending eigenvalues omega^2 whose frequencies agree within `gap` or rounding error.
 
-    The solver computes 1/omega^2. The relative rounding error of omega^2 is therefore proportional to its ratio to the least eigenvalue.
+    The solver computes 1/omega^2. The relative rounding error of omega^2 is therefore proportional to omega^2 divided by the least
+    eigenvalue.
 
     >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]
@@ -374,7 +375,7 @@ def _range(key: tuple[str, ...], numbers: list[int]) -> list[str]:
 
 
 def modal_assurance(first: Array, second: Array, weight: Array | None = None) -> Matrix:
-    """Compute the modal assurance criterion (MAC) |a^T W b|^2 / (a^T W a)(b^T W b) of shapes (n, k) and (n, m).
+    """Compute the modal assurance criterion (MAC) |a^T W b|^2 / (a^T W a)(b^T W b) of shapes a (n, k) and b (n, m).
 
     The `weight` W (n, n) defaults to the unit matrix.
 

@@ -105,7 +105,10 @@ def random_response(
     *,
     damping: Damping | None = None,
 ) -> RandomResponse:
-    """Compute densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2) for uncorrelated inputs.
+    """Compute densities and rms values of outputs for uncorrelated random inputs.
+
+    The density of output i is the sum over j of |H_ij|^2 S_j, with the frequency response H_ij to input j and the density S_j of this
+    input. The square of the rms value is the integral of the output's density over `band`.
 
     `spectra` maps input names to one-sided densities. An input is a single channel of `response` (`ground.z` is floor motion). `band` is
     (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. The frequency panels end at

@@ -61,10 +61,12 @@ def response(
 def transmissibility(
     model: LinearModel, outputs: str | Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
 ) -> Response:
-    """Compute the transmissibility (..., f, p, 6): absolute motion of outputs over motion of the ground at the platform's reference.
+    """Compute the transmissibility (..., f, p, 6): absolute motion of outputs per motion of the ground at the platform's reference.
 
-    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. Damping acts on motion relative to the ground. At low frequency, T of the
-    platform's twist tends to the unit matrix. T of gauges and stress resultants tends to zero, because they depend only on relative motion.
+    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. K, D and M are stiffness, damping and mass matrices. C gives the outputs for
+    motion relative to the ground, C_r for rigid motion with the ground; M_b is the inertia force per acceleration of the ground. Damping
+    acts on motion relative to the ground. At low frequency, T of the platform's twist tends to the unit matrix. T of gauges and stress
+    resultants tends to zero, because they depend only on relative motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -78,8 +80,9 @@ def transmissibility(
 def default_frequencies(model: LinearModel, band: tuple[float, float] | None = None, *, damping: Damping | None = None) -> Array:
     """Return a frequency grid (f,) in Hz: 40 points per decade, and 25 additional points across every resonance.
 
-    The points across a resonance are f_r (1 + zeta_r tan theta), |theta| < 83 degrees. The default `band` is from f_1/50 to twice the
-    twelfth natural frequency. The resonances of the first design of a batch are used; repeated modes have their mean frequency.
+    The points across a resonance are f_r (1 + zeta_r tan theta), |theta| < 83 degrees, with the natural frequency f_r and the damping ratio
+    zeta_r. The default `band` is from 1/50 of the first natural frequency to twice the twelfth. The resonances of the first design of a
+    batch are used; repeated modes have their mean frequency.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -53,9 +53,10 @@ class FlexureLaw:
       fields.
     - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures due to unit amplitudes, at the points of the integration rule
       and of the rotation steps.
-    - `plate` (..., n, 2, e): the fields a2 and a4.
+    - `plate` (..., n, 2, e): the plate fields a2 and a4 due to unit amplitudes, at the points.
     - `compliance` (..., n, 3): stretch and shear compliance.
-    - `trapeze` (...): I_p / A; `stretch` (..., 2): the stiffness against Gaussian curvature.
+    - `trapeze` (...): I_p / (A L^2), with the polar second moment I_p and area A of the section, and the length L.
+    - `stretch` (..., 2): the stiffness against Gaussian curvature.
     - `length` [m], `rigidity` [N m^2].
     - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].
     - `half` (..., 2): half thickness and half width [m].
@@ -93,7 +94,7 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
 
     The law is exact for small strains of a thin leaf, except for two approximations:
 
-    - two shapes across the width: error 0.04 % in bending up to b^2 k / t = 20 (curvature k);
+    - two shapes across the width: error 0.04 % in bending up to b^2 k / t = 20 (width b, thickness t, curvature k);
     - one warping shape for twist at clamped ends.
     """
     length, thickness, width = (np.asarray(each, dtype=float) for each in (part.length, part.thickness, part.width))

@@ -58,7 +58,8 @@ def normals(corners: Array) -> Array:
 def planes(corners: Array, values: Array) -> Array:
     """Interpolate values (t, 3) at the corners of triangles linearly. Triangles without area have coefficients of zero.
 
-    Returns the coefficients (t, 3) of each triangle: value change per pixel to the right, value change per pixel down, and constant.
+    Returns the coefficients (t, 3) of each triangle: the change of the value per pixel to the right, the change per pixel down, and the
+    value at pixel coordinates 0.
 
     >>> planes(np.array([[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]]), np.array([[1.0, 3.0, 5.0]])).tolist()
     [[1.0, 2.0, 1.0]]

@@ -61,7 +61,7 @@ class Mirrors:
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Compute products (n, k) of motions over the whole from products over one `side`; for different kinds they are zero."""
+        """Compute the products (n, k) of motions on the whole from those on one `side`; it is zero for motions of different kinds."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:

@@ -24,7 +24,7 @@ class Question:
 
 
 def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
-    """Evaluate each distinct question. Report its errors at the first location, with the names of other locations.
+    """Evaluate each distinct question once. Report its errors at its first location, with the names of its other locations.
 
     >>> asked = [Question("a", name, lambda: [("it is loose", "Hold it")]) for name in ("B1/front", "B2/front")]
     >>> [str(finding) for finding in findings_of(asked)]

@@ -131,16 +131,18 @@ def hinge_compliance(
 ) -> HingeSolid:
     """Compute the 6x6 compliance matrix of a hinge by finite elements, to the required accuracy (default 1 %).
 
-    With one outer face fixed and the other moved rigidly by e_i about the centre, the displacements u_i have the energies K_ij = u_i^T K_FE
-    u_j. The compliance of the stubs is subtracted: C = K^-1 - sum over stubs of X C_stub X^T. First the order is raised, then the mesh is
-    refined, until the error estimated from the last changes (`estimate.remaining`) is within `accuracy.error`.
+    One outer face is fixed, and the other is moved rigidly by each of six unit motions about the centre. The displacements u_i due to unit
+    motion i give the stiffness K_ij = u_i^T K_FE u_j, with the finite-element stiffness matrix K_FE. From the compliance K^-1, the
+    compliances of the stubs about the hinge's centre are subtracted. First the order is raised, then the mesh is refined, until the error
+    estimated from the last changes (`estimate.remaining`) is within `accuracy.error`.
 
     `roots` selects the ends that are on blocks (default: both ends of a profile that `rises`, else no end). `stub` [m] is the length of a
-    stub. The default of `stub` is the hinge's full height, or five times the hinge's `grain` if the block is wider than the hinge.
+    stub. The default of `stub` is the hinge's full height, or five times the length scale `grain` of the hinge if the block is wider than
+    the hinge.
 
-    The stub's length is a convention; it changes C_x by 1 to 3 %, C_y by about 10 %, and C_rx by a large factor if the hinge is several
-    times wider than high. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made. The functions in `told`
-    report every mesh and solution.
+    The stub's length is a convention; it changes the compliance along x by 1 to 3 %, along y by about 10 %, and about x by a large factor
+    if the hinge is several times wider than high. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made.
+    The functions in `told` report every mesh and solution.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight

@@ -21,9 +21,9 @@ _POINTS = 40
 def beam(section: Section, length: float, medium: Medium) -> Array:
     """Compute the compliance (6, 6) of a prismatic Timoshenko beam along x about its centre; one end stays plane, the other may warp.
 
-    C = diag(L/EA, L^3/12EI_z + k L/GA, L^3/12EI_y + k L/GA, C_rx, L/EI_y, L/EI_z): about the centre, bending and shear are uncoupled.
-    Torsion is by Vlasov's theory: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w). With Saint-Venant torsion, the stubs of a wide hinge
-    would have more compliance than the whole specimen.
+    C = diag(L/EA, L^3/12EI_z + k L/GA, L^3/12EI_y + k L/GA, C_rx, L/EI_y, L/EI_z): about the centre, bending and shear are uncoupled; k is
+    the shear factor. Torsion is by Vlasov's theory: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w), with the warping constant C_w. With
+    Saint-Venant torsion, the stubs of a wide hinge would have more compliance than the whole specimen.
 
     >>> from flexstage.parts.section import circle
     >>> beam(circle(2.0), np.pi, Medium(1.0, 0.0, 1.0)).diagonal()[[0, 3, 4, 5]].round(9).tolist()

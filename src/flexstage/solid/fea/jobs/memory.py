@@ -53,7 +53,7 @@ class Counts:
         return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
-        """Estimate the counts for sizes larger by a `factor`: counts of graded meshes decrease with the square, not the cube.
+        """Estimate the counts for elements larger by a `factor`: counts of graded meshes decrease with its square, not its cube.
 
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Return counts corrected for a fraction `share` of elements of one order more, so that `freedoms` at `order` gives the DOFs.
+        """Return counts with which `freedoms` at `order` gives the DOFs of a mesh with a fraction `share` of elements of one order more.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0
@@ -73,7 +73,9 @@ class Counts:
 
 
 def freedoms(counts: Counts, order: int) -> float:
-    """Count the displacement DOFs at an order: 3 (n_v + (p-1) n_e + (p-1)(p-2)/2 n_f + (p-1)(p-2)(p-3)/6 n_t).
+    """Count the displacement DOFs at order p: 3 (n_v + (p-1) n_e + (p-1)(p-2)/2 n_f + (p-1)(p-2)(p-3)/6 n_t).
+
+    n_v, n_e, n_f and n_t are the numbers of vertices, edges, faces and tetrahedra.
 
     >>> freedoms(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: ten nodes
     30.0

@@ -31,7 +31,7 @@ class Accuracy(CheckedFields):
 
 
 def change(first: Array, second: Array) -> float:
-    """Compute the largest relative change between two compliances (6, 6); each entry ij is relative to sqrt(C_ii C_jj) of the second.
+    """Compute the largest relative change between two compliances (6, 6): that of entry ij is divided by sqrt(C_ii C_jj) of the second.
 
     >>> change(np.diag([1.0, 2.0]), np.diag([1.0, 2.02])).__round__(4)
     0.0099
@@ -41,10 +41,10 @@ def change(first: Array, second: Array) -> float:
 
 
 def remaining(changes: Iterable[float]) -> float:
-    """Estimate the error of the last of several results as max(1, r / (1 - r)) d_n; d_1, d_2, ... are the `changes` between them.
+    """Estimate the error of the last of several results from the `changes` d_1, ..., d_n between them: max(1, r / (1 - r)) d_n.
 
-    Here r = d_n / d_(n-1), at most 0.8. For slow convergence, the estimate is the sum of a geometric series; for fast convergence, it is
-    the last change, an overestimate. The estimate is not a bound; for a single result, it is infinite.
+    Here r is the ratio d_n / d_(n-1) of the last two changes, at most 0.8. For slow convergence, the estimate is the sum of a geometric
+    series; for fast convergence, it is the last change, an overestimate. The estimate is not a bound; for a single result, it is infinite.
 
     >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), round(remaining([0.4, 0.4]), 6), remaining([0.4]), remaining([])
     (0.1, 0.9, 1.6, 0.4, inf)

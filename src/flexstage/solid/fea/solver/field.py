@@ -71,7 +71,7 @@ class Field:
 
     @cached_property
     def linear(self) -> tuple[Array, Array]:
-        """Coefficients in one component of the space: of the function 1 (n / 3,), and of the functions x, y and z [m] (n / 3, 3)."""
+        """Coefficients of functions in one component of the space: (n / 3,) of the constant 1, and (n / 3, 3) of x, y and z [m]."""
         function, place = ngsolve.GridFunction(self.space.components[0]), np.empty((self.size // 3, 3))
         for axis, coordinate in enumerate(_coordinates()):
             function.Set(coordinate, dual=False)
@@ -163,7 +163,9 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 
 
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """Build the form int stress(u) : strain(v) dV [N/m] over some elements (mask) or all; not assembled, it is only for `apply_form`.
+    """Build the elastic form: the integral of stress(u) : strain(v) [N/m] over some elements (mask) or all, for two motions u and v.
+
+    A form that is not assembled is only for `apply_form`.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -181,7 +183,10 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """The form int rho u . v dV [kg], as a sum of `scalar` matrices (n / 3, n / 3) that apply separately to the three components of u."""
+    """Inertia: the integral of rho u . v over the volume [kg], for the density rho and two motions u and v.
+
+    It is the sum of the `scalar` matrices (n / 3, n / 3), which apply separately to the three components of u.
+    """
 
     scalar: tuple[Any, ...]
 
@@ -252,7 +257,9 @@ def _apply_by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector
 
 
 def stroke_force(space: Field, frame: Frame, length: float) -> Array:
-    """Compute the forces (n,) of a unit free stroke: int C e0 : strain(v) dV; the strain e0 = x x^T / length is along the frame's x axis.
+    """Compute the forces (n,) of a unit free stroke: the integrals of C e0 : strain(v) over the volume, for each basis function v.
+
+    C is the elastic tensor. The strain e0 = x x^T / length is along the frame's x axis.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -298,8 +305,8 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array:
     """Return all twelve non-rigid motions (n, 12) that are linear or quadratic over a face; the face is normal to a frame's x axis.
 
-    Here y and z are divided by `size` [m]. In the frame's axes, the first three motions are in-plane strains and shear. In the other nine
-    motions, u_x, u_y or u_z is y^2, y z or z^2.
+    Here y and z are divided by `size` [m]. In the frame's axes, the first three motions are the strains along y and z, and the shear in the
+    y-z plane. In the other nine motions, u_x, u_y or u_z is y^2, y z or z^2.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -384,7 +391,7 @@ def nodes_on(space: Field, face: str) -> Array:
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
-    """Compute rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, and R the rigid motions in a frame.
+    """Compute rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, the motion u, and rigid motions R in a frame.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

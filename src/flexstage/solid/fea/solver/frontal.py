@@ -101,7 +101,7 @@ class Fronts:
 
     @property
     def operations(self) -> float:
-        """Number of operations: the sum of n^3 / 3 + n^2 m + n m^2 over all fronts, with n eliminated and m coupled DOFs."""
+        """Number of operations: the sum of n^3 / 3 + n^2 m + n m^2 over all fronts, with n eliminated DOFs, coupled to m others."""
         pairs = ((3.0 * (front.last - front.first), 3.0 * len(front.beyond)) for front in self.fronts)
         return sum(own * (own * own / 3.0 + own * beyond + beyond * beyond) for own, beyond in pairs)
 
@@ -237,9 +237,9 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Ite
     """Factorise a sum of matrices, positive definite on the free nodes, once for each set of `held` (fixed) degrees of freedom.
 
     Matrices are `scipy.sparse.csr_array` with both triangles. The DOFs of all nodes along x come first, then those along y, then along z.
-    For each pair of coupled nodes, all nine entries are stored. Each row of `held` (k, n) is the mask of one set of DOFs; the DOFs in the
-    set are decoupled. Sets share a front if neither the front nor its children have held DOFs. The sets are factorised one after another,
-    when needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
+    For each pair of coupled nodes, all nine entries are stored. Each row of `held` (k, n) is the mask of one set of fixed DOFs, which are
+    decoupled from all others. Sets share a front if neither the front nor its children have held DOFs. The sets are factorised one after
+    another, when needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
     parts, met = [_Entries.of(order, matrix) for matrix in matrices], np.any(by_node, axis=(0, 2))

@@ -40,7 +40,10 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions due to unit twists of `faces` (n, 6 m), to unit `warps` (n, w), and to loads `within` with faces fixed; and `solve`."""
+    """Motions due to unit twists of the m interface `faces` (n, 6 m), due to unit `warps` (n, w), and due to loads `within`.
+
+    The loads `within` act with fixed faces. `solve` computes the motions due to further forces.
+    """
 
     faces: Columns
     warps: Columns

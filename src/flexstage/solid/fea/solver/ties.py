@@ -111,7 +111,11 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
 
 
 def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
-    """Build the contribution of a superelement. Its strain is the port twists relative to the first port, and modes `inner` (m, N)."""
+    """Build the contribution of a superelement.
+
+    Its strain consists of the twists of the other ports relative to the first port, and the amplitudes of its m modes. `inner` (m, N) gives
+    these amplitudes from the N coordinates of the model.
+    """
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
