@@ -36,8 +36,8 @@ _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 class Mode:
     """One mode: a `platform` mode, a `local` mode near a platform mode, or another mode. `platform_share` is a kinetic-energy fraction.
 
-    `compliance_share` is the mode's fraction of the platform's static compliance along its platform motion. `energy_share` lists the bodies
-    and links with a kinetic-energy fraction of at least 1 %, largest first.
+    `compliance_share` is the mode's fraction of the platform's static compliance, along the platform's motion in this mode. `energy_share`
+    lists the bodies and links with a kinetic-energy fraction of at least 1 %, largest first.
     """
 
     TABLE: ClassVar[Layout] = Layout("Modes", "number frequency name platform_share compliance_share plane role")

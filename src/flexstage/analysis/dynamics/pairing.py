@@ -48,8 +48,8 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
 
     The modal assurance (Allemang and Brown 1982) is weighted by kinetic energy. A least-squares fit of the common motion outputs converts
     the modes of both models to the coordinates of the smaller model. The inertia of this model gives the kinetic energy. In the fit,
-    rotations are multiplied by the platform's radius of gyration. The modal assurance is relative to each mode's total kinetic energy,
-    including motion without an output.
+    rotations are multiplied by the platform's radius of gyration. The modal assurance is normalised by the total kinetic energy of each
+    mode, including motion without an output.
 
     Any mode of the other model can be paired, also a local mode. Modes closer than 1 % are compared as a subspace and paired in ascending
     order. Below a modal assurance of `RELIABLE`, the paired mode is only the most similar one, not a match.

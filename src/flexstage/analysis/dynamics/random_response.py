@@ -112,8 +112,8 @@ def random_response(
 
     `spectra` maps input names to one-sided densities. An input is a single channel of `response` (`ground.z` is floor motion). `band` is
     (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. The frequency panels end at
-    multiples of each resonance's half width, at the points of tables and six times per decade. These panels resolve every peak (error 1e-8,
-    compared with the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
+    multiples of the half width from each resonance, at the points of tables, and at six points per decade. These panels resolve every peak
+    (error 1e-8, compared with the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

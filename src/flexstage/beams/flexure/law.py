@@ -54,10 +54,10 @@ class FlexureLaw:
     - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures due to unit amplitudes, at the points of the integration rule
       and of the rotation steps.
     - `plate` (..., n, 2, e): the plate fields a2 and a4 due to unit amplitudes, at the points.
-    - `compliance` (..., n, 3): stretch and shear compliance.
+    - `compliance` (..., n, 3): compliances in stretch and in shear along y and z, times the bending rigidity, divided by L^2.
     - `trapeze` (...): I_p / (A L^2), with the polar second moment I_p and area A of the section, and the length L.
     - `stretch` (..., 2): the stiffness against Gaussian curvature.
-    - `length` [m], `rigidity` [N m^2].
+    - `length` L [m], and bending `rigidity` about z [N m^2], with which the tables are dimensionless.
     - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].
     - `half` (..., 2): half thickness and half width [m].
     - `natural` (..., 2): natural curvatures about z and across the width, times the length.

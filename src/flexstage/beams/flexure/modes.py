@@ -19,8 +19,8 @@ FINE = 200
 class Rule:
     """Gauss rule on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), the integrals of the interpolant from 0 to each point.
 
-    `knots` (n + 2,) are 0, the points and 1. `inner` (3 (n + 1),) are three Gauss points in each interval between knots. The product of
-    `ends` (2, n) and the values at the points is the interpolant at 0 and 1.
+    `knots` (n + 2,) are 0, the points and 1. `inner` (3 (n + 1),) are three Gauss points in each interval between knots. `ends` (2, n) maps
+    the values at the points to the interpolated values at 0 and 1.
     """
 
     points: Array

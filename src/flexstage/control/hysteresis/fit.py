@@ -27,7 +27,10 @@ class Form:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Fitted model: slopes (m-1,) of the envelope, with a mean of 1 that sets the scale of thresholds, weights (n,) [m/V], offset [m]."""
+    """Fitted model: `slopes` (m-1,) of the envelope before the plays, `weights` (n,) [m/V] of the plays, and `offset` [m].
+
+    The slopes have a mean of 1, which sets the scale of the thresholds.
+    """
 
     form: Form
     slopes: Array

@@ -20,10 +20,10 @@ SMALL_ERROR = Graded(0.02)
 
 @dataclass(frozen=True)
 class Trial:
-    """One tried model size: numbers of `plays` and envelope `pieces`, `reach` (largest threshold relative to the range), and error.
+    """One tried model size: numbers of `plays` and envelope `pieces`, and `reach`; with its error.
 
-    `error` is the cross-validation error relative to the stroke. Several fits each exclude one part of the record; the rms error is
-    computed over the excluded parts.
+    All thresholds are below `reach` times the voltage range. `error` is the cross-validation error, divided by the stroke. Several fits
+    each exclude one part of the record; the rms error is computed over the excluded parts.
     """
 
     plays: int
@@ -51,7 +51,7 @@ class Plays:
 class IdentifiedHysteresis(InNotebook):
     """Hysteresis model identified from a record, with its accuracy.
 
-    Errors and the width are relative to `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are errors over
+    Errors and the width are divided by `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are errors over
     the samples from `known_from`, which do not depend on the unknown history. `validation` is the rms error on parts of the record that
     were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the recorded voltage range;
     `inner` is the number of branches shorter than 80 % of the recorded range. `volts`, `strokes` and `modelled` (k,) are the samples used.

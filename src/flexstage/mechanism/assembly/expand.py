@@ -208,7 +208,7 @@ class Assembly:
 
     @cached_property
     def pushes(self) -> Mapping[str, tuple[str, Array]]:
-        """Input name and wrench per unit of input (..., 6) of every force actuator, by link, with the sign of the polarity in a circuit."""
+        """Input name and wrench (..., 6) per unit of input of each force actuator, by link; the polarity in a circuit sets the sign."""
         known = {link: each for link, each in self.circuits.items() if each[0] in self.thrusts}
         return {link: (name, sign * actuator_of(self.links[link].part).wrench) for link, (name, sign) in known.items()}
 

@@ -108,7 +108,7 @@ class CommandStage:
 
     @property
     def links(self) -> LinearModel:
-        """The linear model in which links are separate."""
+        """The linear model with separate links, for lost motion and drift."""
         if self.operating_point is not None:
             return self.operating_point.links
         loaded = None if self.effect is None else self.effect.links

@@ -76,8 +76,8 @@ def view(side: Side) -> View:
 def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, tallest: float = 1.1, below: float = 0.0) -> Any:
     """Create a figure with a `width` [inch] and frameless axes [mm] that contain all points (n, 3) [m] in this view.
 
-    `gap` is the margin relative to the larger of width and height of the points. `tallest` is the largest ratio of height and width.
-    `below` is free space under the axes [inch].
+    `gap` is the margin divided by the larger of the width and height of the box around the points. `tallest` is the largest ratio of the
+    axes' height to their width. `below` is free space under the axes [inch].
 
     >>> picture_axes(np.zeros((1, 3)), view(Side.TOP), 2.0).viewLim.intervalx.tolist()
     [-1.0, 1.0]

@@ -38,7 +38,7 @@ class Mirrors:
 
     @property
     def copies(self) -> int:
-        """Number of mirror images in the whole, which is also the number of kinds of motion."""
+        """Number of sides that form the whole, which is also the number of kinds of motion."""
         return 2 ** len(self.axes)
 
     @property

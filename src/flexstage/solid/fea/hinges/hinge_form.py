@@ -28,10 +28,10 @@ class HingeSolid:
     """6x6 matrices [SI] of a hinge by three-dimensional elasticity, between the ends of its arcs, about its centre in the link frame.
 
     `compliance` and `stiffness` (6, 6) are for the twist (x, y, z, rx, ry, rz) of the second end relative to the first. `error` estimates
-    the largest relative error of the compliance *at the hinge's end*, where errors of each entry ij are relative to sqrt(C_ii C_jj).
-    `changes` (6,) are the last relative changes of the diagonal about the centre. The entries of y and z change more, because they are
-    differences of lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`, `elements` and
-    `order` are those of the last solution; `finding` is a warning if the required accuracy was not reached.
+    the largest relative error of the compliance *at the hinge's end*, where the error of each entry ij is divided by sqrt(C_ii C_jj).
+    `changes` (6,) are the last relative changes of the compliance's diagonal about the centre. The entries of y and z change more, because
+    they are differences of lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`,
+    `elements` and `order` are those of the last solution; `finding` is a warning if the required accuracy was not reached.
     """
 
     compliance: Array

@@ -116,7 +116,7 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 
 @dataclass(frozen=True)
 class ReductionWork:
-    """Computing effort of a reduction, from its mesh: counts, unknowns, operations of its factors, and the pace of the machine.
+    """Computing effort of a reduction: counts of its mesh, unknowns, operations of its factorisations, and the pace of the machine.
 
     `pace` is the time of a small factorisation relative to its usual time.
     """

@@ -66,7 +66,7 @@ class PieceMesh:
     """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) of each element.
 
     The mask `finer` selects elements in notches and thin leaves, which have one order more than the others. If the mesh is the positive
-    side of a component with `mirrors`, `images` (copies - 1, elements) are the pieces of the elements' mirror images.
+    side of a component with `mirrors`, `images` (copies - 1, elements) has the piece to which each mirror image of an element belongs.
     """
 
     mesh: ngsolve.Mesh

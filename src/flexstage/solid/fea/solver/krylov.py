@@ -21,7 +21,7 @@ Operator = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Pencil:
-    """Operators `mass` and `inverse` (inverse of the stiffness) for vectors of length `size`."""
+    """The operators of an eigenvalue problem: `mass`, and `inverse` (of the stiffness), for vectors of length `size`."""
 
     mass: Operator
     inverse: Operator

@@ -30,13 +30,13 @@ class Skin:
 class Superelement:
     """A reduced component in its own axes. Its n coordinates are interface twists, `warps` and internal coordinates.
 
-    The twist of an interface is at the interface's own point. `stiffness` and `inertia` have a matrix (n, n) for each link and body.
-    `bodies` (6, n) give the mean twists of bodies; `inertia` includes the inertia `body_inertia` (6, 6) for these twists. `resultants` (6,
-    n) give the wrenches at the centres of links, in the links' frames. `strokes` (n,) are the forces of a unit free stroke; `free_strokes`
-    (n,) are the coordinates after this stroke without constraint. `rigid` (n, 6) are the rigid motions about the component's origin (only
-    without fixed joints); `carried` (n, 6) are the inertial forces of unit rigid accelerations. `seats` (6, n) give the twist of the
-    surface around each end of a part without a shape. A floating component has one interface: its own rigid motion about the reference
-    point of its first body.
+    The twist of an interface is at the interface's own point. `stiffness` and `inertia` have a matrix (n, n) for each link and body. For
+    each body, `bodies` (6, n) give its mean twist from the coordinates; `inertia` includes the inertia `body_inertia` (6, 6) for these
+    twists. For each link, `resultants` (6, n) give the wrench at its centre, in its frame. For each stack, `strokes` (n,) are the forces of
+    a unit free stroke, and `free_strokes` (n,) the coordinates after this stroke without constraint. `rigid` (n, 6) are the rigid motions
+    about the component's origin (only without fixed joints); `carried` (n, 6) are the inertial forces of unit rigid accelerations. `seats`
+    (6, n) give the twist of the surface around each end of a part without a shape. A floating component has one interface: its own rigid
+    motion about the reference point of its first body.
     """
 
     interfaces: int
