@@ -45,7 +45,7 @@ class Cross(Section):
 
     @cached_property
     def torsion(self) -> Number:
-        """Saint-Venant's J = t^4 (2 b / 3 t - 0.08476 - 4.6 exp(-pi b / 2 t)) [m^4], within 2e-4 for b >= 3 t.
+        """Saint-Venant's torsion constant t^4 (2 b / (3 t) - 0.08476 - 4.6 exp(-pi b / (2 t))) [m^4], within 2e-4 for b >= 3 t.
 
         The terms are two strips b t^3 / 3 with corrections for the junction and the ends (form of Trayer & March, NACA Report 334, 1930).
         The coefficients fit finite-element solutions of Prandtl's stress function (Timoshenko & Goodier, Theory of Elasticity, section

@@ -112,7 +112,7 @@ class Coil(ThrustActuator):
 
     @property
     def cutoff(self) -> Number | None:
-        """Cut-off frequency R / (2 pi L) of a voltage drive [Hz]; None for a current drive.
+        """Cut-off frequency R / (2 pi L) of a voltage drive [Hz], with resistance R and inductance L; None for a current drive.
 
         >>> round(VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, drive=Supply.VOLTAGE).cutoff, 1)
         954.9
@@ -122,7 +122,9 @@ class Coil(ThrustActuator):
         return self.resistance / (2.0 * np.pi * self.inductance)
 
     def slew(self, limit: Number) -> Number | None:
-        """Return the mean slew rate (V - R i) / L from zero current to a `limit` i [A/s], without back-EMF.
+        """Return the slew rate (V - R i / 2) / L [A/s] at the mean current from zero to a `limit` i, without back-EMF.
+
+        V is the voltage limit, R the resistance and L the inductance.
 
         >>> VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, voltage=24.0).slew(2.0)
         18000.0

@@ -210,7 +210,7 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
 
 
 def clusters(values: Array, gap: float) -> list[list[int]]:
-    """Return groups of indices of ascending values; in a group, each relative gap to the next value is below `gap`.
+    """Return groups of indices of ascending values; within a group, neighbouring values have relative differences below `gap`.
 
     >>> clusters(np.array([1.0, 1.0 + 1e-9, 2.0]), 1e-6)
     [[0, 1], [2]]

@@ -40,9 +40,10 @@ class Rate(Enum):
 class Spectrum(CheckedFields):
     """One-sided power spectral density of an input.
 
-    `density` is one number (white noise), or a table (f,) over `frequencies` (f,) in Hz. The unit of `density` is (unit of the input)^2/Hz
-    or, with `rate`, (unit of the velocity or acceleration)^2/Hz. A table is interpolated log-log; outside its frequencies, the density is
-    zero. Example for floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    `density` is one number (white noise), or a table (f,) of densities at `frequencies` (f,) in Hz. The unit of `density` is (unit of the
+    input)^2/Hz or, with `rate`, (unit of the velocity or acceleration)^2/Hz. Between the frequencies of a table, the logarithm of the
+    density is linear in the logarithm of the frequency; outside, the density is zero. Example for floor acceleration: `Spectrum(1e-8,
+    rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array

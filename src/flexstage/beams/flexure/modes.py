@@ -75,9 +75,10 @@ def slopes(count: int, places: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """Integrals of products of the shapes phi_j = P_j(2 z) / 12 and their derivatives across the width b = 1.
+    """Integrals across the width b = 1: of products of the shapes phi_j = P_j(2 z) / 12 (Legendre polynomials P_j) and their derivatives.
 
-    The products are, in order, phi phi, phi' phi', phi'' phi'', phi phi'' and z phi''. `turning` contains the integrals of phi'.
+    The products of `plain` to `curling` are, in order, phi phi, phi' phi', phi'' phi'', phi phi'' and z phi''. `turning` contains the
+    integrals of phi'.
     """
 
     plain: Array

@@ -33,11 +33,11 @@ class IdentifiedCreep:
 
 
 def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: float = 0.1) -> IdentifiedCreep:
-    """Fit w(t) = w_0 (1 + gamma log10(t/t_0)) to the stroke after a voltage step; t_0 is `reference` [s].
+    """Fit w(t) = w_0 (1 + gamma log10(t/t_0)) to the stroke w at the time t after a voltage step; t_0 is `reference` [s].
 
     `times` [s], `volts` [V] and `strokes` [m] are (k,); the stack is in equilibrium before the step. The least-squares fit uses means over
     equal intervals of log t, so that every decade has equal weight. Raises `DesignError` if the voltage is not a single step, if the record
-    after t_0 is shorter than a decade, or if the stroke does not follow the logarithm.
+    after t_0 is shorter than a decade, or if the stroke does not follow the logarithmic law.
 
     >>> times = np.arange(0.0, 100.0, 0.05)
     >>> after = np.maximum(times - 1.0, 0.01)

@@ -53,7 +53,7 @@ class OuterBend:
 
 @dataclass(frozen=True)
 class StackCreep:
-    """Creep, as in a file: `rate` per decade of time, relative to the stroke at the `reference` time after a step."""
+    """Creep, as in a file: `rate` is the creep per decade of time, divided by the stroke at the `reference` time after a step."""
 
     rate: Annotated[float, RATIO]
     reference: Annotated[float, TIME, POSITIVE] = 0.1

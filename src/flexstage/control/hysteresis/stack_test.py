@@ -78,7 +78,7 @@ class StackTest(InNotebook):
 
     @property
     def inverse_rms(self) -> Annotated[float, VIEW, Heading("rms error, inverse", digits=3, unit="%", mark=SMALL_ERROR)]:
-        """Rms difference between the voltages of the inverse model and of the test, relative to the voltage range."""
+        """Rms difference between the voltages of the inverse model and of the test, divided by the voltage range."""
         wrong, (low, high) = (self.inverse_volts - self.hysteresis.volts)[self.valid_samples], self.hysteresis.range
         return float(np.sqrt(np.mean(wrong**2))) / (high - low)
 

@@ -23,7 +23,7 @@ class Stacks:
 
 
 def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIshlinskii:
-    """Scale a one-axis model with the range `volts` to n stacks, with loops of the same form over each stack's range and stroke.
+    """Scale a one-axis model with the voltage range `volts` to n stacks, whose loops have the same form in each stack's range and stroke.
 
     The knots of the envelope before the plays are scaled, and the values of the envelope after the plays; thresholds and weights do not
     change. The full stroke is the stroke of the settled loop, with 0 at the loop's lower end. Raises `DesignError` for a model of several

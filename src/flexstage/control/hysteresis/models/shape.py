@@ -19,7 +19,7 @@ class MajorLoop:
     """Settled major loop over a range: outputs (k, axes) of the branches `up` and `down` at ascending inputs `volts` (k,).
 
     `stroke` (axes,) is the output span between the ends. `width` (axes,) is the largest distance between the branches at the same input,
-    relative to `stroke`.
+    divided by `stroke`.
     """
 
     volts: Array
@@ -33,7 +33,7 @@ class MajorLoop:
 
     @property
     def width(self) -> Array:
-        """Largest distance between the branches at the same input (axes,), relative to the stroke."""
+        """Largest distance (axes,) between the branches at the same input, divided by the stroke."""
         return np.max(self.down - self.up, axis=0) / self.stroke
 
 

@@ -18,7 +18,9 @@ _SAME = 1e-9
 
 
 def contour_edges(contour: Contour, rise: float, sign: float) -> list[occ.TopoDS_Shape]:
-    """Draw the edge y = sign (rise + w(x)) [mm] from -x to +x; it has a vertex in the middle, where the mesh must be fine.
+    """Draw the edge y = sign (rise + w(x)) [mm] of a contour with the height w(x), from end to end.
+
+    The edge has a vertex in the middle, where the mesh must be fine.
 
     Straight and cubic intervals are drawn exactly. Any other interval is a spline through 65 points, with an error of at most 2e-5 of its
     size.

@@ -130,7 +130,7 @@ def _stage(rotation: Array | None) -> Array:
 
 
 def stack_medium(stack: Piezo) -> Medium:
-    """Return the medium of a stack's ceramic: E = k L / A from its axial stiffness, density from its mass.
+    """Return the medium of a stack's ceramic: E = k L / A from axial stiffness k, length L and area A; density from the mass.
 
     >>> round(stack_medium(Piezo(stroke=1e-4, stiffness=17e6, length=0.162, diameter=0.01, mass=0.1)).young / 1e9, 2)
     35.07

@@ -118,7 +118,7 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 class ReductionWork:
     """Computing effort of a reduction: counts of its mesh, unknowns, operations of its factorisations, and the pace of the machine.
 
-    `pace` is the time of a small factorisation relative to its usual time.
+    `pace` is the time of a small factorisation, divided by its usual time.
     """
 
     counts: Counts
@@ -138,7 +138,7 @@ class ReductionWork:
 
 
 def measure_pace() -> float:
-    """Measure the pace of this machine: CPU time of a small dense factorisation (the shortest of several), relative to its usual time.
+    """Measure the pace of this machine: shortest CPU time of several small dense factorisations, divided by the usual time.
 
     >>> measure_pace() > 0.0
     True
