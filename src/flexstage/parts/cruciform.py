@@ -82,10 +82,7 @@ class Cross(Section):
         return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the shear stress [Pa] of a torque [N m], without stress concentration at the inner corner.
-
-        It is the sum of Saint-Venant's stress on the faces of the leaves and the shear stress of the leaves, which bend as strips.
-        """
+        """Return Saint-Venant's stress on the leaves' faces plus shear of bending strips, without stress concentration at the corner."""
         strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
         return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
 

@@ -124,8 +124,6 @@ class Coil(ThrustActuator):
     def slew(self, limit: Number) -> Number | None:
         """Return the slew rate (V - R i / 2) / L [A/s] at the mean current from zero to a `limit` i, without back-EMF.
 
-        V is the voltage limit, R the resistance and L the inductance.
-
         >>> VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, voltage=24.0).slew(2.0)
         18000.0
         """

@@ -119,7 +119,7 @@ class Modes(Result):
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
-        """Return the body or link (several if equal) with the largest kinetic-energy fraction in a mode, and its value (first design)."""
+        """Return the body or link (several if equal) with the largest kinetic-energy fraction in a mode (first design), and this share."""
         shares = first_design(self.energies, 2)[:, index]
         most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
         return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))

@@ -155,12 +155,11 @@ def natural_curvature(part: Leaf, material: Material) -> float:
 
 
 def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False, curvature: float = 0.0) -> FlexureLaw:
-    """Build the law of a part with a `Beam`. Its modes are polynomial moments (docs/nonlinear.md, 14).
+    """Build the law of a part with a `Beam`; its modes are polynomial moments (docs/nonlinear.md, 14).
 
-    Each curvature is a moment times the flexibility of the section.
-
-    At zero load, the law gives the 6x6 stiffness matrix of the beam. With `flat`, the section is assumed to be thin: twist stretches its
-    fibres far from the axis (Wagner effect). `curvature` is the natural curvature about z [1/m].
+    Each curvature is a moment times the flexibility of the section. At zero load, the law gives the 6x6 stiffness matrix of the beam. With
+    `flat`, the section is assumed to be thin: twist stretches its fibres far from the axis (Wagner effect). `curvature` is the natural
+    curvature about z [1/m].
     """
     places, weights, flexibility, inertia = _whole(part)
     length = np.sum(weights)

@@ -34,7 +34,8 @@ def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
     The shapes are P_k - cosh(c u) / cosh(c) for even k, and P_k - sinh(c u) / sinh(c) for odd k. P_k are the Legendre polynomials of u = 2
     s - 1, with the place s from 0 to 1.
 
-    `decay` c (...) is half the length times sqrt(G J / (E C_w)). The computation does not overflow for large c.
+    `decay` c (...) is half the length times sqrt(G J / (E C_w)), with the torsional rigidity G J and the warping rigidity E C_w. The
+    computation does not overflow for large c.
 
     >>> restrained_twist_modes(2, np.array([0.0, 1.0]), np.array(500.0)).values.round(12).tolist()
     [[0.0, 0.0], [0.0, 0.0]]

@@ -49,11 +49,10 @@ class LogCreep(CheckedFields):
 class Creep:
     """Creep operator from an input u to y = g_0 u + sum_i g_i s_i, with the states s_i of first-order lags: tau_i ds_i/dt + s_i = u.
 
-    `instant` (axes,) is g_0; `gains` and `times` [s] (axes, m) are g_i and tau_i.
-
-    The operator acts on the stroke between the hysteresis and the stage (Hammerstein model). If u is constant over the sampling period T,
-    the exact state update is s_i <- s_i + (1 - e^{-T/tau_i}) (u - s_i), after y is computed. For a single axis the shape (m,) is also
-    accepted. Raises `DesignError` for time constants that are not positive.
+    `instant` (axes,) is g_0; `gains` and `times` [s] (axes, m) are g_i and tau_i. The operator acts on the stroke between the hysteresis
+    and the stage (Hammerstein model). If u is constant over the sampling period T, the exact state update is s_i <- s_i + (1 -
+    e^{-T/tau_i}) (u - s_i), after y is computed. For a single axis the shape (m,) is also accepted. Raises `DesignError` for time constants
+    that are not positive.
     """
 
     instant: Array

@@ -147,10 +147,8 @@ def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wan
     """Learn the command path + d for a true path (n, f) at rest at both ends.
 
     After each pass, Q (d + gain P_m^-1 e) replaces d: e is the error of the pass, P_m the model's response from reference to measured pose,
-    and Q the low-pass of the robust band.
-
-    `run(path, number)` simulates pass `number` along a commanded path, and returns the measured poses (n, f). Raises the `DesignError` of
-    `robust_band`.
+    and Q the low-pass of the robust band. `run(path, number)` simulates pass `number` along a commanded path, and returns the measured
+    poses (n, f). Raises the `DesignError` of `robust_band`.
     """
     robust = robust_band(closed, control, lesson.gain, lesson.spread)
     frequencies = frequencies_of(wanted, closed.step or 1.0)

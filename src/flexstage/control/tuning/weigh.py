@@ -83,12 +83,10 @@ class RegulatorSpace:
 def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
     """Optimise the weights of linear-quadratic control: maximise the smallest improvement of the objective's quantities.
 
-    Improvements are relative to the known outcome `against`.
-
-    The method is the downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308), with coefficients that depend on the dimension (Gao &
-    Han, Computational Optimization and Applications 51 (2012) 259). The simplex starts from the best point of a grid. The grid extends
-    around the first mode and includes the controller `begun`. If the crossover at `bandwidth` [Hz] of `begun` is above the modes, the grid
-    is around `begun`. The search is deterministic.
+    Improvements are relative to the known outcome `against`. The method is the downhill simplex (Nelder & Mead, Computer Journal 7 (1965)
+    308), with coefficients that depend on the dimension (Gao & Han, Computational Optimization and Applications 51 (2012) 259). The simplex
+    starts from the best point of a grid. The grid extends around the first mode and includes the controller `begun`. If the crossover at
+    `bandwidth` [Hz] of `begun` is above the modes, the grid is around `begun`. The search is deterministic.
     """
 
     def cost(point: Array) -> float:

@@ -51,7 +51,7 @@ class PrandtlIshlinskii(Hysteresis):
         return len(self.thresholds)
 
     def start(self, value: Array) -> Array:
-        """Return play outputs (axes, n) after a monotonic change from the initial state, all 0, to the input (axes,)."""
+        """Return the n play outputs (axes, n), initially all 0, after a monotonic change of the input to a value (axes,)."""
         effective = self.before.at(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[:, None]
         return np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, 0.0))
 

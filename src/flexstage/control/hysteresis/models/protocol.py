@@ -14,8 +14,8 @@ from flexstage.base.number import Array, freeze
 class Hysteresis(Protocol):
     """Rate-independent hysteresis of `axes` actuators: the output depends on the order of the inputs, not on their times.
 
-    The input must be monotonic between two samples, as after a hold; then one update per sample is exact. Inputs and outputs have the shape
-    (axes,); models of stacks map volts to free strokes [m]. Each model has its own form of state.
+    One update per sample is exact if the input is monotonic between two samples, e.g. after a zero-order hold. Inputs and outputs have the
+    shape (axes,); models of stacks map volts to free strokes [m]. Each model has its own form of state.
     """
 
     @property

@@ -20,10 +20,8 @@ _SAME = 1e-9
 def contour_edges(contour: Contour, rise: float, sign: float) -> list[occ.TopoDS_Shape]:
     """Draw the edge y = sign (rise + w(x)) [mm] of a contour with the height w(x), from end to end.
 
-    The edge has a vertex in the middle, where the mesh must be fine.
-
-    Straight and cubic intervals are drawn exactly. Any other interval is a spline through 65 points, with an error of at most 2e-5 of its
-    size.
+    The edge has a vertex in the middle, where the mesh must be fine. Straight and cubic intervals are drawn exactly. Any other interval is
+    a spline through 65 points, with an error of at most 2e-5 of its size.
 
     >>> from flexstage.parts.profile import Vee
     >>> [round(edge.mass, 6) for edge in contour_edges(Vee(2e-3, 1e-4, np.pi / 2.0), 0.5, 1.0)[::3]]  # two flanks at 45 degrees

@@ -19,9 +19,9 @@ _ORDER = 4
 def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
     """Give folded elements of a curved mesh straight sides. Return `None`, or the reason if straightening fails.
 
-    Elements of `kept` (mask) keep their curved sides; if one of them is inverted, the reason contains the lowest Jacobian. If an element
-    was folded, the mesh then has order one, and the remaining curved shape is a deformation; call `UnsetDeformation` before curving the
-    mesh again.
+    Elements of `kept` (mask) keep their curved sides; if one of them is inverted, the reason contains the lowest Jacobian determinant. If
+    an element was folded, the mesh then has order one, and the remaining curved shape is a deformation; call `UnsetDeformation` before
+    curving the mesh again.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -183,10 +183,7 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """Inertia: the integral of rho u . v over the volume [kg], for the density rho and two motions u and v.
-
-    It is the sum of the `scalar` matrices (n / 3, n / 3), which apply separately to the three components of u.
-    """
+    """The integral of rho u . v dV [kg] of motions u and v: a sum of `scalar` matrices (n / 3, n / 3) for each component of the motions."""
 
     scalar: tuple[Any, ...]
 

@@ -40,10 +40,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions due to unit twists of the m interface `faces` (n, 6 m), due to unit `warps` (n, w), and due to loads `within`.
-
-    The loads `within` act with fixed faces. `solve` computes the motions due to further forces.
-    """
+    """Motions due to unit twists of m `faces` (n, 6 m), unit `warps` (n, w), and loads `within` with faces fixed; `solve` gives others."""
 
     faces: Columns
     warps: Columns

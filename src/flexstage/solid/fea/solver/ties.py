@@ -111,11 +111,7 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
 
 
 def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
-    """Build the contribution of a superelement.
-
-    Its strain consists of the twists of the other ports relative to the first port, and the amplitudes of its m modes. `inner` (m, N) gives
-    these amplitudes from the N coordinates of the model.
-    """
+    """Build the contribution of a superelement; strain: port twists relative to the first port, then mode amplitudes `inner` (m, N)."""
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
