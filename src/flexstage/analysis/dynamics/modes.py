@@ -66,10 +66,10 @@ class Mode:
 class Modes(Result):
     """Undamped natural modes of a stage, sorted by frequency.
 
-    `frequencies` (..., k) are in Hz, `shapes` (..., n, k) are mass-normalised, `platform_shapes` (..., 6, k) are the platform's twists.
-    `share` (..., k) is the kinetic-energy fraction of the platform body, `compliance_share` (..., k) the fraction of the platform's static
-    compliance. `bodies` names the rows of `energies` (..., b, k), the kinetic-energy fractions of bodies and links. `chosen` (..., k) marks
-    platform modes.
+    The stage has k modes and n coordinates. `frequencies` (..., k) are in Hz, `shapes` (..., n, k) are mass-normalised, `platform_shapes`
+    (..., 6, k) are the platform's twists. `share` (..., k) is the kinetic-energy fraction of the platform body, `compliance_share` (..., k)
+    the fraction of the platform's static compliance. `energies` (..., b, k) are the kinetic-energy fractions of b bodies and links, named
+    in `bodies`. `chosen` (..., k) marks platform modes.
 
     `names`, `in_plane` and `platform` (indices of the platform modes) describe the modes of the first design. A mode with equal fractions
     of several bodies is named after all of them. `limit` determines only the number of listed modes. If `partial`, the stage is large and

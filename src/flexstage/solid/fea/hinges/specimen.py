@@ -112,7 +112,7 @@ def grain(part: Shaped) -> float:
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
-    """Return section and length [m] of the stub at a hinge's end: as high as a profile that `rises`, else wider on all sides.
+    """Return section and length [m] of the stub at a hinge's end: the end's section if the profile `rises`, else wider on all sides.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))

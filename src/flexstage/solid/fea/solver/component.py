@@ -126,8 +126,8 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
 def with_yielding_ends(component: Component) -> Component:
     """Return the same component, but with link ends that may deform even on rigid bodies.
 
-    The output of an isolated unit is rigid, while the unit in its stage ends on an elastic platform. If all warps are zero, the returned
-    component is equal to the original.
+    An isolated unit, whose output is rigid, and the unit in its stage, where it ends on an elastic platform, then have equal components. If
+    all warps are zero, the returned component is equal to the original.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields
