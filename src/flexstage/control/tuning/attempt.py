@@ -83,7 +83,8 @@ class BandwidthTrial:
     """Design of controllers with the crossover of all loops at a `frequency` [Hz], on the plant `seen`.
 
     The first attempt has only the specified notches. Further attempts add notches of several widths at modes with a loop gain above 0.3.
-    The best law of a loop has the lowest peak of S; among laws with peaks up to `calm`, the law with the highest static gain is best.
+    The best law of a loop has the lowest peak of the sensitivity. Among laws with peaks up to the argument `calm` of `reach`, the law with
+    the highest static gain is best.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -102,7 +103,7 @@ class BandwidthTrial:
     frequency: float
 
     def best(self) -> Attempt | None:
-        """Return the first attempt that meets frequency and specification, else the attempt with the best score; None if no law exists."""
+        """Return the first attempt that meets crossover and specification, else the attempt with the best score; None if no law exists."""
         tried: list[Attempt] = []
         for found in self._attempts(0.0):
             if found.reaches(self.frequency, self.spec):
@@ -330,11 +331,11 @@ class _Designer:
 
     @cached_property
     def estimates(self) -> Array:
-        """Responses (s, f, k + n) of its states to loop errors (subtracted from the pose) and strokes, at the view's frequencies."""
+        """Responses (s, f, k + n) of s states to k loop errors (subtracted from the pose) and n strokes, at the view's frequencies."""
         return self.estimates_at(self.seen.frequencies)
 
     def estimates_at(self, frequencies: Array) -> Array:
-        """Responses (s, f, k + n) at other frequencies [Hz]."""
+        """Responses (s, f, k + n) at other frequencies (f,) [Hz]."""
         found, count = self.estimator.sweep(frequencies), len(self.seen.loops.names)
         found[..., :count] = found[..., :count] @ np.linalg.inv(self.seen.loops.sense)
         return np.ascontiguousarray(np.moveaxis(found, 0, 1))

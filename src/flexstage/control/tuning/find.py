@@ -61,13 +61,13 @@ _EXPECTED = 1e-9
 def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...] = ()) -> Tuning:
     """Optimise a controller for the objective of a specification.
 
-    The variables are the control law of every loop, and the width and depth of its notches. A crossover beyond a mode is possible if
-    margins hold for all mode shifts. The search first continues `known` tunings of a plant with fewer modes. If they give no result, the
-    search starts from a grid around the modes, unless the controller of highest bandwidth (`tune`) has its crossover beyond the modes. If
-    the controller of highest bandwidth is still better, the search also starts from this controller. The result is at least as good for the
-    objective (`merit`) as the controller of highest bandwidth, if that controller meets all requirements. Eigenvalues determine stability;
-    the coupled peak of S of the sampled loop, for mode shifts within the spread, determines robustness. Raises `DesignError` for an
-    unstable open loop, for contradictory requirements, and for each unmet requirement.
+    The variables are the control law of every loop, and the frequencies, widths and depths of its notches. A crossover beyond a mode is
+    possible if margins hold for all mode shifts. The search first continues `known` tunings of a plant with fewer modes. If they give no
+    result, the search starts from a grid around the modes, unless the controller of highest bandwidth (`tune`) has its crossover beyond the
+    modes. If the controller of highest bandwidth is still better, the search also starts from this controller. The result is at least as
+    good for the objective (`merit`) as the controller of highest bandwidth, if that controller meets all requirements. Eigenvalues
+    determine stability; the coupled peak of S of the sampled loop, for mode shifts within the spread, determines robustness. Raises
+    `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -318,7 +318,7 @@ def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
 
 
 def unstable_places(within: Field, controller: Decentralised) -> Iterator[float]:
-    """Yield the frequency [Hz], divided by 1 + shift, of the fastest growing motion with each mode shift beyond the spread."""
+    """Yield the frequency [Hz] of the fastest growing motion, divided by 1 + shift, for each unstable mode shift beyond the spread."""
     seen, system = within.seen, controller.system(within.seen.step)
     for offset, plant in zip(seen.offsets, seen.systems, strict=True):
         poles = closed_system(plant, system).poles.astype(complex)
@@ -335,7 +335,7 @@ def _controller(within: Field, found: SearchResult) -> Decentralised:
 
 
 def prefilters(within: Field, found: SearchResult) -> tuple[Prefilter, ...]:
-    """Select a prefilter per loop from a grid: least overshoot over all mode shifts (values up to 2 % are equal), then fastest settling."""
+    """Select a prefilter per loop from a grid: least overshoot for all mode shifts (values up to 2 % are equal), then fastest settling."""
     loops, chosen = one_loops(within, found), dict[int, Prefilter]()
     for loop, first in enumerate(within.alike):
         chosen[loop] = chosen[first] if first in chosen else _soonest(loops[loop])

@@ -39,7 +39,7 @@ _STIFFER, _SOFTER = 4.0, 3.0
 
 @dataclass(frozen=True)
 class Bounds:
-    """Bounds of a loop: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], maximum `overshoot`.
+    """Bounds of a loop: sensitivity |S| < 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], maximum `overshoot`.
 
     `noise` is the maximum rms noise in regulation. The first `plants` (1 or 2) plants must meet the rejection; for the second plant, 0.95
     of `rejection` is sufficient.
@@ -56,9 +56,10 @@ class Bounds:
 class OneLoop:
     """Single loop with the others closed: the `point` of a `shape` defines its controller C.
 
-    C times `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz]. Step responses use the evenly spaced frequencies `lines` (h,)
-    [Hz] from 0 to half the step sampling rate. `slow` (w, h - 1) are the plants at all `lines` except 0. The mean square of noise is the
-    sum of `disturbed` (f,) |S|^2 from the floor and `heard` (f,) |T|^2 from gauges, for the first plant.
+    `plants` (v, f) are the responses of v plants at their f `frequencies` (v, f) [Hz]; the product of C and a plant is the open loop. Step
+    responses use the evenly spaced frequencies `lines` (h,) [Hz] from 0 to half the step sampling rate. `slow` (w, h - 1) are the responses
+    of w plants at all `lines` except 0. The mean square of noise is a sum over the frequencies for the first plant: `disturbed` |S|^2 is
+    due to the floor, `heard` |T|^2 to the gauges. S is the sensitivity, T = 1 - S the complementary sensitivity.
     """
 
     shape: Shape
@@ -72,12 +73,12 @@ class OneLoop:
 
     @cached_property
     def sensitivity(self) -> Array:
-        """Sensitivity S (v, f)."""
+        """Sensitivity S (v, f) of v plants at f frequencies."""
         return 1.0 / (1.0 + self.plants * self.shape.value(self.point, self.frequencies))
 
     @cached_property
     def following(self) -> Array:
-        """Complementary sensitivity T (w, h) at `lines`; T is 1 at zero frequency."""
+        """Complementary sensitivity T (w, h) of w plants at the frequencies `lines`; T is 1 at zero frequency."""
         loops = self.slow * self.shape.value(self.point, self.lines[1:])
         return np.concatenate([np.ones((len(loops), 1)), loops / (1.0 + loops)], axis=-1)
 
@@ -88,7 +89,7 @@ class OneLoop:
 
     @property
     def rejection(self) -> float:
-        """First frequency [Hz] where |S| of the model rises through 1."""
+        """First frequency [Hz] where the magnitude of the model's sensitivity rises through 1."""
         return first_rise(np.abs(self.sensitivity[0]), self.frequencies[0])
 
     @property
@@ -109,10 +110,11 @@ class OneLoop:
     def misfits(
         self, bounds: Bounds, quiet: float, near: tuple[Array, Array], slow: tuple[Array, Callable[[], Array]]
     ) -> Iterator[tuple[Array, Array]]:
-        """Compute the residuals of all bounds except peaks of S, with derivatives; `quiet` is the weight of noise.
+        """Yield the residuals and derivatives of all bounds except peaks of the sensitivity; `quiet` is the weight of noise.
 
-        `near` contains S (n, f) of the plants that must meet the rejection, and slopes (p, n, f). `slow` contains T (w, h), and a function
-        that returns slopes (p, w, h - 1). Slopes are the derivatives of ln C with respect to the p parameters: dS = -S T slopes.
+        `near` contains the sensitivity S (n, f) of the n plants that must meet the rejection, and slopes (p, n, f). `slow` contains the
+        complementary sensitivity T (w, h), and a function that returns slopes (p, w, h - 1). Slopes are the derivatives of the logarithm of
+        the controller C with respect to its p parameters; the derivatives of S are -S T times the slopes.
         """
         own, slopes = near
         above = self._rejected(bounds) & (np.abs(own) > _BELOW)
@@ -121,7 +123,7 @@ class OneLoop:
         yield from self._settling(bounds, *slow)
 
     def excess(self, bounds: Bounds) -> float:
-        """Compute the largest relative violation of a bound, except peaks of S."""
+        """Compute the largest relative violation of a bound, except peaks of the sensitivity."""
         sizes, steps = np.abs(self.sensitivity[: bounds.plants]), _steps(self.following)
         below, late = self._rejected(bounds), self._late(bounds, steps.shape[1])
         return float(
@@ -228,7 +230,7 @@ def _is_promising(costs: list[float], tries: int, enough: float) -> bool:
 
 
 def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:
-    """Return half the sum of squares of residuals (r,) with derivatives (p, r), and the gradient and curvature of this sum."""
+    """Return half the sum of squares of residuals (r,), with its gradient and curvature from their derivatives (p, r) by p parameters."""
     cost, gradient, curvature = 0.0, np.zeros(size), np.zeros((size, size))
     for values, changes in terms:
         cost += 0.5 * float(values @ values)

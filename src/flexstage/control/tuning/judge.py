@@ -18,7 +18,7 @@ _COARSE = 8
 
 
 def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:
-    """Evaluate stability by eigenvalues, the peak of S over all frequencies of the view, and each loop's bandwidth.
+    """Evaluate stability by eigenvalues, the peak sensitivity over all frequencies of the view, and each loop's bandwidth.
 
     `gains` are the `open_gains` if already known.
 
@@ -75,7 +75,7 @@ def _sensitivity(seen: View, gains: Array) -> Array:
 
 
 def open_gains(seen: View, control: System) -> Array:
-    """Compute open loops L (v, f, k, k) in loop coordinates, S = (I + L)^-1.
+    """Compute the open-loop responses L (v, f, k, k) in loop coordinates; the sensitivity is (I + L)^-1.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -89,7 +89,7 @@ def open_gains(seen: View, control: System) -> Array:
 
 
 def closed_growth(plant: System, control: System) -> float:
-    """Compute the spectral abscissa [1/s] of a plant (commands to pose) under a controller.
+    """Compute the growth rate [1/s] of the fastest growing motion (negative: decay) of a plant (commands to pose) under a controller.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -114,10 +114,10 @@ def closed_system(plant: System, control: System) -> System:
 
 
 def highest_gain(matrices: Array) -> tuple[float, int]:
-    """Find the largest singular value of all matrices (f, k, k), and its index.
+    """Find the largest singular value of f matrices (f, k, k), and the index of the matrix that has it.
 
-    Bounds exclude most matrices before eigenvalues are computed. The upper bound is the square root of the largest row sum of |M^H M|, the
-    lower bound the norm of the longest column.
+    Two bounds exclude most matrices before eigenvalues are computed. The upper bound for a matrix M is the square root of the largest row
+    sum of |M^H M|. The lower bound is the norm of the longest column of all matrices.
 
     >>> highest_gain(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 3.0], [0.0, 4.0]]]))
     (5.0, 1)
@@ -131,7 +131,7 @@ def highest_gain(matrices: Array) -> tuple[float, int]:
 
 
 def crossing_frequency(frequencies: Array, gains: Array) -> float:
-    """Find the first frequency where a gain falls through 1, log-interpolated; 0 if it starts below 1, infinite if it never falls.
+    """Find the first frequency where a gain falls through 1, log-interpolated; 0 if it starts below 1, infinite if it stays above.
 
     >>> round(crossing_frequency(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
     12.26
@@ -147,7 +147,7 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
 
 
 def first_rise(sizes: Array, frequencies: Array) -> float:
-    """Find the first upward crossing of 1, interpolated in logarithms.
+    """Find the first frequency at which `sizes` rises through 1, interpolated in logarithms of both.
 
     Returns the last frequency if `sizes` never reaches 1, and the first frequency if `sizes` begins at 1 or above.
 

@@ -25,7 +25,9 @@ _BELOW = 0.4
 
 
 def pi_laws(place: Place, step: float | None) -> list[PI]:
-    """Compute sampled PI laws with |C g| = 1 at the crossover: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a and the crossover w.
+    """Compute sampled PI laws with an open-loop gain of 1 at the crossover.
+
+    The gains are k_p = sin(a)/|g| and k_i = w cos(a)/|g| for several angles a, with the plant's response g at the crossover w [1/s].
 
     >>> [round(found.integral, 6) for found in pi_laws(Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), 1e-4)][:1]
     [2.0]
@@ -35,7 +37,7 @@ def pi_laws(place: Place, step: float | None) -> list[PI]:
 
 
 def pid_laws(place: Place, step: float | None) -> list[PID]:
-    """Compute PI laws, and PID laws with a double zero at w/tan(a/2) for angles a and the crossover w.
+    """Compute PI laws, and PID laws with a double zero at w/tan(a/2) for several angles a and the crossover w [1/s].
 
     The derivative filter is at ten times the crossover, but at most 0.4 of the sampling rate.
     """
@@ -53,7 +55,11 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
 
 
 def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
-    """Compute laws of several dampings, feed-throughs and corners. The tracking gain k solves |k/(j w) - Q| = 1/|g| at the crossover w."""
+    """Compute laws of several dampings, feed-throughs and corners.
+
+    The tracking gain k solves |k/(j w) - Q| = 1/|g| at the crossover w [1/s], with the law's feedback Q of the pose and the plant's
+    response g there.
+    """
     found: list[IntegralResonant] = []
     turning = warped(place.frequency, step)
     if place.resonance is None or not place.static > 0.0:

@@ -18,7 +18,7 @@ _BAND = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Performance of a controller: `peaks` (v,) of S for each variant of a field, other values for each loop (k,).
+    """Performance of a controller: `peaks` (v,) of the sensitivity for the v variants of a field, other values for each of k loops.
 
     `rejection` (2, k) [Hz] contains the sensitivity crossover of the model, then the lowest crossover for mode shifts within the spread.
     `noise` [m] is the rms noise in regulation, `floor` [m] the contribution of the floor. `settling` [s] (2 %) and `overshoot` are the

@@ -119,7 +119,7 @@ _CLOSE = np.linspace(-0.06, 0.06, 25)
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """Search parameters: noise weight `quiet`, maximum number of steps `tries`, and half sum of squares `enough` that ends the search."""
+    """Search parameters: weight `quiet` of noise, at most `tries` steps; the search ends at half a sum of squares of `enough`."""
 
     quiet: float
     tries: int
@@ -158,10 +158,10 @@ class Work:
 
 @dataclass(frozen=True)
 class Variant:
-    """Variant of the plant: modes shifted by `offset`, commands times `gain`, delayed by `later` [s]; and its `limit` of |S|.
+    """Variant of the plant: modes shifted by `offset`, commands multiplied by `gain` and delayed by `later` [s].
 
-    The delay rotates the phase by at most `turn` [rad]. Variants with a smaller `turn` represent smaller delays, at which a mode far above
-    the crossover may be unstable.
+    `limit` is the highest permitted sensitivity. The delay rotates the phase by at most `turn` [rad]. Variants with a smaller `turn`
+    represent smaller delays, at which a mode far above the crossover may be unstable.
     """
 
     offset: float
@@ -202,15 +202,16 @@ def farthest(spec: TuningSpec) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Search data of v variants: `plants` (v, f, k, k), the responses from k loop commands to poses at `frequencies` (v, f).
+    """Search data: the responses of plants from the commands of k loops to their poses.
 
-    `slow` (w, h, k, k) are the responses at the frequencies `lines` (h,), for step responses: only of the w variants with mode shifts
-    within the spread. Each plant has the frequencies of the model times (1 + offset), so that its modes are at the same indices. `lines`
-    are evenly spaced.
+    `plants` (v, f, k, k) are the responses of the v variants, each at its f `frequencies` (v, f) [Hz]: the frequencies of the model
+    multiplied by (1 + offset), so that the modes are at the same indices. `slow` (w, h, k, k) are the responses of the w variants with only
+    mode shifts within the spread. They are at the evenly spaced frequencies `lines` (h,) [Hz], for step responses.
 
-    `disturbed` (f, k, d) is the amplitude of each loop's pose due to each floor motion, `heard` (f, k) due to gauge noise. The two
-    amplitudes are weighted for sums of squares over frequency. `alike` maps each loop to the first equal loop. `allowed` is the limit of
-    each loop's rms noise in regulation; default: no limit. `fast` [Hz] is the known crossover, for step sampling and filters.
+    `disturbed` (f, k, d) are the amplitudes of the loops' poses due to d floor motions, `heard` (f, k) the amplitudes due to gauge noise.
+    Both are multiplied by the square root of the frequency spacing, so that a sum of their squares over the frequencies is a mean square.
+    `alike` maps each loop to the first equal loop. `allowed` is the limit of each loop's rms noise in regulation; default: no limit. `fast`
+    [Hz] is the known crossover, for step sampling and filters.
     """
 
     seen: View
@@ -229,13 +230,13 @@ class Field:
 
     @cached_property
     def strokes(self) -> Array:
-        """Plants (v, f, k, n) from all strokes to the loops."""
+        """Responses (v, f, k, n) of the v variants from n strokes to the poses of k loops, at `frequencies`."""
         cases = zip(self.variants, self.frequencies, strict=True)
         return np.stack([self.seen.driven_at(each.offset, at) * each.factor(at)[:, None, None] for each, at in cases])
 
     @cached_property
     def slow_strokes(self) -> Array:
-        """Plants (w, h, k, n) from all strokes at the step `lines` except the first, which is zero frequency."""
+        """Responses (w, h - 1, k, n) from n strokes to the poses of k loops, at the frequencies `lines` except the first, zero."""
         return np.stack([self.seen.driven_at(self.variants[place].offset, self.lines[1:]) for place in self.spread])
 
     @property
@@ -338,9 +339,9 @@ def _heard(seen: View) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """Search result: for each loop its shape, its point, and the frequency `reached` [Hz] for the objective (0 without an objective).
+    """Search result: each loop's shape, its parameter point, and the frequency `reached` [Hz] for the objective (0 without an objective).
 
-    `noises` are the rms in regulation with the loops of other blocks open, if known.
+    `noises` are the rms errors of the loops in regulation, if known; loops of other groups are open.
     """
 
     shapes: tuple[Shape, ...]
@@ -349,7 +350,7 @@ class SearchResult:
     noises: tuple[float, ...] = ()
 
     def responses(self, frequencies: Array) -> Array:
-        """Compute the responses C (..., k) of the loops at frequencies (...) [Hz]."""
+        """Compute the responses (..., k) of the controllers of k loops at frequencies (...) [Hz]."""
         every = [shape.value(point, frequencies) for shape, point in zip(self.shapes, self.points, strict=True)]
         return np.stack(every, axis=-1)
 
@@ -643,7 +644,7 @@ def _fit_together(within: Field, found: SearchResult, bounds: list[Bounds], effo
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """Joint optimisation of all loops: the residuals are violated bounds, noise, and excesses of the coupled peak of S.
+    """Joint optimisation of all loops: the residuals are violated bounds, noise, and excesses of the coupled sensitivity over its limit.
 
     Equal loops share their parameters.
     """
@@ -662,7 +663,7 @@ class Joint:
 
     @cached_property
     def loops(self) -> Mapping[int, tuple[OneLoop, float]]:
-        """All different loops, each with its noise weight divided by its rms noise at the start."""
+        """All different loops; each has a noise weight: the common weight divided by the loop's rms noise at the start."""
         begun = one_loops(self.within, self.found)
         return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 
@@ -671,7 +672,7 @@ class Joint:
         return replace(self.found, points=tuple(point[self.parts[first]] for first in self.within.alike))
 
     def at(self, point: Array) -> Squares | None:
-        """Compute half the sum of squares with derivatives at a point; `None` for an unstable plant."""
+        """Compute half the sum of squares of the residuals, its gradient and curvature at a point; `None` if a plant is unstable."""
         within, found = self.within, self.moved(point)
         within.work.count(within.size)
         values, slopes = self._responses(found, within.frequencies)
@@ -725,7 +726,11 @@ def _is_stable(whole: Array) -> bool:
 
 
 def one_loops(within: Field, found: SearchResult, whole: Array | None = None) -> list[OneLoop]:
-    """Evaluate each loop i with the others closed: C g = 1/S_ii - 1. S_ij/S_ii, for disturbances of loop j, does not depend on C."""
+    """Evaluate each loop with the others closed.
+
+    With the sensitivity S of all loops together, the open-loop response of loop i is 1/S_ii - 1. A disturbance of loop j acts on loop i
+    multiplied by S_ij/S_ii, which does not depend on the controller of loop i.
+    """
     whole = coupled_sensitivities(within.plants, found, within.frequencies) if whole is None else whole
     slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
     responses, slow_responses = found.responses(within.frequencies), found.responses(within.lines[1:])
@@ -834,12 +839,12 @@ def _bounds(spec: TuningSpec, frequency: float) -> Bounds:
 
 
 def coupled_sensitivities(plants: Array, found: SearchResult, frequencies: Array) -> Array:
-    """Compute S (v, f, k, k) of all loops together."""
+    """Compute the sensitivity (v, f, k, k) of k coupled loops, for v plants at their f frequencies."""
     return closed_by(plants, found.responses(frequencies))
 
 
 def closed_by(plants: Array, responses: Array) -> Array:
-    """Compute S (v, f, k, k) of plants with the loops' responses (v, f, k); for one or two loops by Cramer's rule, which is faster."""
+    """Compute the sensitivity (v, f, k, k) of plants with controllers (v, f, k); for one or two loops by Cramer's rule, which is faster."""
     returned = np.eye(plants.shape[-1]) + plants * responses[..., None, :]
     if plants.shape[-1] > 2:
         return np.linalg.inv(returned)

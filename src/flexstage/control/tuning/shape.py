@@ -23,8 +23,9 @@ _BELOW = 0.45
 class Shape:
     """PI, or PID filtered at `corner` [Hz], with `count` notches, sampled every `step` [s].
 
-    A point contains the logarithms of k_p and k_i/k_p [1/s], for a PID also of k_d/k_p [s], and of each notch's frequency [Hz], depth and
-    damping. The lower limit `slowest` [1/s] of k_i/k_p limits the rate of the zero and of the integrator's tail.
+    A point contains logarithms: of the proportional gain k_p, of the ratio k_i/k_p [1/s] of the integral gain, for a PID of the ratio
+    k_d/k_p [s] of the derivative gain, and of each notch's frequency [Hz], depth and damping. `slowest` [1/s] is the lower limit of
+    k_i/k_p; it keeps the zero and the integrator's tail from becoming too slow.
     """
 
     count: int
@@ -55,7 +56,7 @@ class Shape:
         return np.log(np.maximum([*gains, *numbers], 1e-12))
 
     def bounds(self, start: Array) -> tuple[Array, Array]:
-        """Return bounds (low, high) of points around a start: notches stay near their start, and below half the sampling rate."""
+        """Return bounds (low, high) of points: notch frequencies stay near those of `start`, and below half the sampling rate."""
         low, high = start - np.log(_GAIN), start + np.log(_GAIN)
         low[1] = np.log(self.slowest)
         for number in range(self.count):
@@ -66,7 +67,7 @@ class Shape:
         return low, high
 
     def response(self, point: Array, frequencies: Array) -> tuple[Array, Array]:
-        """Compute the sampled response C (f,) from error to command, and d ln C (p, f) by the parameters; infinite at zero frequency.
+        """Compute the controller's response (f,), infinite at zero frequency, and its logarithm's derivatives (p, f) by the p parameters.
 
         >>> shape = Shape(1, 1e-4)
         >>> start = shape.point(PI(0.5, 100.0), (Notch(106.0, 0.1, 0.5),))
@@ -84,7 +85,7 @@ class Shape:
         return value, np.array(slopes)
 
     def value(self, point: Array, frequencies: Array) -> Array:
-        """Compute the response C (f,) without derivatives."""
+        """Compute the controller's response (f,) without derivatives."""
         turned, rate = self._turned(frequencies)
         value = self._law(point, 1j * rate * turned)[0]
         for frequency, depth, damping in np.exp(self._notch_points(point)):

@@ -27,12 +27,13 @@ class TuningSpec(CheckedFields):
     `rejection` [Hz] and `settling` [s] (2 %; default: as good as possible). `overshoot` is the largest permitted overshoot of a step
     response, `delay_margin` [s] the smallest permitted delay margin of a loop. With `prefilter`, prefilters shape the references.
 
-    `sensitivity` is the maximum peak of S (poses as lengths). A peak of 2 (6 dB) implies gain margins of 2 and phase margins of 29 deg
-    (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, equation 2.47). Stability and peak must hold for relative shifts of
-    all modes within +-`spread`. With an objective, stability and peak must also hold for relative errors of all gains within +-`gain`.
+    `sensitivity` is the highest permitted peak of the sensitivity, for a pose with rotations converted to lengths. A peak of 2 (6 dB)
+    implies gain margins of 2 and phase margins of 29 deg (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, equation 2.47).
+    Stability and peak must hold for relative shifts of all modes within +-`spread`. With an objective, stability and peak must also hold
+    for relative errors of all gains within +-`gain`.
 
-    `expected` are the disturbances that an observer assumes. `floor` are the spectra of floor motion by input. `feedforward` (n, f) gives
-    the feedforward strokes from the reference.
+    `expected` are the disturbances that an observer assumes. `floor` are the spectra of floor motion by input. The matrix `feedforward` (n,
+    f) multiplies the reference of f coordinates; the result is n feedforward strokes.
     """
 
     family: Family
@@ -92,7 +93,7 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
 
 @dataclass(frozen=True)
 class Judgement:
-    """Evaluation of a loop: `bandwidths` [Hz] by loop, `peak` of S and its `frequency` [Hz], spectral abscissa `growth` [1/s].
+    """Evaluation: `bandwidths` [Hz] by loop, `peak` sensitivity, its `frequency` [Hz], and rate `growth` [1/s] of the fastest growth.
 
     The bandwidths belong to the nominal plant; `peak` and `growth` are the largest over the mode spread. `offset` is the mode shift with
     the highest peak or, in an unstable loop, with the largest growth; `frequency` belongs to this shift.
@@ -111,7 +112,7 @@ class Judgement:
 
     @property
     def score(self) -> float:
-        """Score (smaller is better): the peak of S, or a value above 1e9 for an unstable loop."""
+        """Score (smaller is better): the peak of the sensitivity, or a value above 1e9 for an unstable loop."""
         return self.peak if self.stable else 1e9 * (1.0 + self.growth)
 
 

@@ -36,8 +36,9 @@ _STANDS_OUT = 2.0
 class View:
     """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
 
-    `responses` (v, f, k, n) are from strokes to the loops' poses at `frequencies` (f,) [Hz], only for the first v offsets, which are within
-    the spread. `modes` [Hz] and `ratios` are the frequencies and damping ratios of the plant's modes.
+    `responses` (v, f, k, n) are the frequency responses from n strokes to the poses of k loops at `frequencies` (f,) [Hz]. They exist only
+    for the first v offsets, which are within the spread. `modes` [Hz] and `ratios` are the frequencies and damping ratios of the plant's
+    modes.
     """
 
     plant: Plant
@@ -61,7 +62,7 @@ class View:
 
     @property
     def static(self) -> Array:
-        """Gains (k,) of the loops at the lowest frequency."""
+        """Gain (k,) from the command to the pose of each loop at the lowest frequency."""
         return np.real(self.own[0, 0])
 
     def at(self, frequency: float) -> Array:
@@ -69,17 +70,17 @@ class View:
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
     def driven_at(self, offset: float, frequencies: Array) -> Array:
-        """Compute responses (f, k, n) from strokes to the loops' poses at frequencies (f,) [Hz], with modes shifted by `offset`."""
+        """Compute responses (f, k, n) from n strokes to the poses of k loops at frequencies (f,) [Hz], with modes shifted by `offset`."""
         return self.loops.sense @ self.systems[self.offsets.index(offset)].sweep(frequencies)
 
     @cached_property
     def driven(self) -> Array:
-        """Responses (v, f, k, k) from the loops' commands to the loops' poses."""
+        """Responses (v, f, k, k) from the commands to the poses of k loops, for v offsets at f frequencies."""
         return self.responses @ self.loops.drive
 
     @cached_property
     def own(self) -> Array:
-        """Responses (v, f, k) from the command of each loop to its pose."""
+        """Responses (v, f, k) from the command to the pose of each of k loops, for v offsets at f frequencies."""
         return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
 
     @cached_property
@@ -97,7 +98,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     """Compute the `View` of a plant for its loops; `offsets` are relative mode shifts, in ascending magnitude.
 
     Frequency responses are computed only for offsets within the `spread`. A relative shift s of all modes is equivalent to another time
-    scale: the plant is sampled every (1 + s) T instead of T.
+    scale: the plant is sampled at intervals (1 + s) times as long.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -116,7 +117,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
 
 
 def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
-    """Yield the indices of all earlier loops with the same responses `own` (v, f, k) as `loop`, then the index `loop`."""
+    """Yield the indices of all earlier loops whose responses in `own` (v, f, k) equal those of `loop`, then the index `loop`."""
     largest = np.max(np.abs(own[..., loop]))
     yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
     yield loop

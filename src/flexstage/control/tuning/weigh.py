@@ -41,9 +41,9 @@ _UNSTABLE = 1e3
 
 @dataclass(frozen=True, eq=False)
 class RegulatorSpace:
-    """Search space: points are logarithms of the loops' bandwidths [Hz], the strokes' noise [m/Hz^0.5], and the weights of the pose.
+    """Search space: a point contains the logarithms of bandwidths [Hz], of the strokes' noise [m/Hz^0.5], and of weights of the pose.
 
-    Equal loops share their parameters.
+    The point has a bandwidth and a pose weight for each loop; equal loops share them.
     """
 
     within: Field
@@ -155,9 +155,9 @@ def _improvements(spec: TuningSpec, found: Outcome, against: Outcome) -> Iterato
 
 
 def merit(spec: TuningSpec, found: Outcome) -> float:
-    """Compute the merit of an outcome: the logarithm of the objective's quantity, averaged over the loops.
+    """Compute the merit of an outcome: the mean over all loops of the logarithm of the objective's quantity.
 
-    For a balance the quantity is the lower of two frequencies: the rejection crossover, and six divided by the settling time.
+    For a balance the quantity is the lower of two frequencies: the sensitivity crossover, and six divided by the settling time.
     """
     settling = np.maximum(found.settling, 1e-300)
     merits = {
@@ -177,7 +177,7 @@ def worth(within: Field, found: Outcome) -> float:
 
 
 def excess_of(within: Field, found: Outcome) -> float:
-    """Sum the violations of all bounds; peaks include a reserve for maxima between grid frequencies."""
+    """Sum the relative violations of all bounds; limits of peaks are reduced, because maxima may be between grid frequencies."""
     return _excess(within.spec, found, _INSIDE * np.array([each.limit for each in within.variants]))
 
 
