@@ -26,10 +26,10 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True, eq=False)
 class HingeDimensions:
-    """Dimensions of a hinge (...): thickness, width, half length, arc semi-axes, Poisson's ratio.
+    """Dimensions of a hinge (...): thickness, width, half length and arc semi-axes; and Poisson's ratio.
 
-    `beam` (..., 6) is the diagonal of the hinge's compliance by beam theory, times Young's modulus. Hinges without arcs do not use the
-    semi-axes.
+    `beam` (..., 6) is the diagonal of the hinge's compliance by beam theory, multiplied by Young's modulus. Hinges without arcs do not use
+    the semi-axes.
     """
 
     thickness: Array
@@ -47,12 +47,12 @@ class HingeDimensions:
 
     @property
     def root(self) -> Array:
-        """Square root of t/R, thickness over radius at the throat."""
+        """Square root of t/R, the thickness divided by the radius of curvature at the throat."""
         return np.sqrt(self.thickness / self.radius)
 
     @property
     def flatness(self) -> Array:
-        """Height of the arc over the half length."""
+        """Height of the arc divided by the half length."""
         return self.across / self.along
 
     @property
@@ -78,7 +78,7 @@ Law = Callable[[HingeDimensions, Numbers], Array]
 
 
 def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the tensile compliance of a notch: root compliance d(t/R) / (E b), with d fitted; restrained contraction reduces it."""
+    """Compute the tensile compliance of a notch, with the fitted compliance of its roots; restrained contraction reduces it."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
@@ -106,7 +106,10 @@ def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the bending compliance of a notch. For small t/R, the root rotation is proportional to t/R; it rises with nu."""
+    """Compute the bending compliance of a notch, with a fitted root rotation.
+
+    For a thin notch, the rotation is proportional to the thickness divided by the radius; it rises with Poisson's ratio.
+    """
     neck = np.sqrt(hinge.thickness * hinge.radius)
     turned = _root_rotation(hinge, p) * hinge.flatness ** p[4] * (1.0 + p[5] * (hinge.poisson - 0.3))
     return hinge.plane_strain(p[2], p[3], neck) * (hinge.beam[..., 5] + turned)
@@ -137,7 +140,7 @@ def _root_rotation(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
-    """Compute the rotational compliance of a right-circular notch about z [rad/(N m)], with s = R/t (Wu & Zhou, Rev Sci Instrum 73, 2002).
+    """Compute the rotational compliance of a right-circular notch about z [rad/(N m)] (Wu & Zhou, Rev Sci Instrum 73, 2002).
 
     >>> float(f"{wu_zhou_rotation(200e3, 10.0, 1.0, 5.0):.7g}")
     1.539997e-05
@@ -191,7 +194,7 @@ def leaf_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def leaf_rx(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the torsional compliance of a leaf; restrained contraction at the ends stiffens its strips, up to 1 / (1 - nu^2) if wide."""
+    """Compute the torsional compliance of a leaf; restrained contraction at its ends increases its stiffness, most of all if it is wide."""
     wide, _ = _proportions(hinge)
     restrained = hinge.poisson**2 / (1.0 - hinge.poisson**2)
     return hinge.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
@@ -213,7 +216,10 @@ def _saturate(share: Array) -> Array:
 
 
 def toroidal(hinge: HingeDimensions, p: Numbers, index: int) -> Array:
-    """Compute the compliance of a toroidal neck: beam theory times exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
+    """Compute the compliance of a toroidal neck: the compliance by beam theory, multiplied by a fitted factor.
+
+    The factor is exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3))), with thickness t, radius R, Poisson's ratio nu and coefficients `p`.
+    """
     return hinge.beam[..., index] * np.exp(hinge.root**2 * (p[0] + p[1] * hinge.root + p[2] * (hinge.poisson - 0.3)))
 
 

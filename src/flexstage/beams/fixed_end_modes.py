@@ -38,7 +38,7 @@ _FIRST_LOBE = -0.9
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """Plate data of a leaf: `width` b and Poisson's ratio. The plate rigidity D follows from the beam rigidity: D b = E I / (1 - nu^2)."""
+    """Plate data of a leaf: `width` and Poisson's ratio nu. The plate rigidity times the width is the beam rigidity E I / (1 - nu^2)."""
 
     width: Number
     poisson: Number
@@ -46,7 +46,7 @@ class Plate:
 
 @dataclass(frozen=True, eq=False)
 class Bending:
-    """Part of a `length` that bends in a plane: rigidity E I, `shear` stiffness, mass and rotary inertia per length."""
+    """Part of a `length` that bends in a plane: `rigidity` E I, `shear` stiffness, and per length its `mass` and `rotary` inertia."""
 
     length: Number
     rigidity: Number
@@ -58,9 +58,11 @@ class Bending:
 
 @dataclass(frozen=True, eq=False)
 class Torsion:
-    """Part of a `length` that twists: `rigidity` G J, `warping` E C_w (absent: free warping), inertia and rho C_w per length.
+    """Part of a `length` that twists, with torsional `rigidity` G J, and `inertia` about its axis per length.
 
-    For a `plate`, the warping stiffness is D b^3 / 12, with polynomials of higher degree across the width.
+    `warping` is E C_w (absent: free warping), and `warping_inertia` rho C_w, with Young's modulus E, density rho and the warping constant
+    C_w. For a `plate` of width b and plate rigidity D, the warping stiffness is D b^3 / 12, with polynomials of higher degree across the
+    width.
     """
 
     length: Number
@@ -73,9 +75,10 @@ class Torsion:
 
 @dataclass(frozen=True, eq=False)
 class FixedEndModes:
-    """Modes of unit modal mass: squared angular frequencies `squares` (..., n) [1/s^2], displacement and rotation of sections (..., n, s).
+    """Modes of unit modal mass: squared angular frequencies `squares` (..., n) [1/s^2], and the motion of sections.
 
-    `axis` is 1 for deflections along y, 2 along z, 3 for twist about x. The rotation is dw/dx for deflections, and not used for twist.
+    `moved` (..., n, s) are the displacements of s sections in n modes, and `turned` (..., n, s) their rotations. `axis` is 1 for
+    deflections along y, 2 along z, 3 for twist about x. The rotation is the slope of the section for deflections, and not used for twist.
     """
 
     axis: int

@@ -30,10 +30,10 @@ class _CasedStack(Circle):
 
 
 def piezo_beam(part: Piezo) -> Beam:
-    """Build the uniform round rod of a stack at constant stroke, of modulus E = k L / A, with its specified mass.
+    """Build the uniform round rod of a stack at constant stroke, with the stack's `effective_modulus` and mass.
 
-    A specified `bending_rigidity` EI replaces the bending rigidity. The torsional rigidity then becomes G J = EI / (1 + nu), as for a round
-    section. The shear stiffness remains that of the ceramic.
+    A specified `bending_rigidity` replaces the bending rigidity. The torsional rigidity is then the bending rigidity divided by one plus
+    Poisson's ratio, as for a round section. The shear stiffness remains that of the ceramic.
 
     >>> stack = Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01)
     >>> round(float(1e-6 / piezo_beam(stack).diagonal()[0]), 9)
@@ -53,7 +53,7 @@ def piezo_beam(part: Piezo) -> Beam:
 
 
 def effective_modulus(part: Piezo) -> Number:
-    """Compute the modulus E = k L / A [Pa] of a uniform rod with the ceramic's diameter and the stack's axial stiffness.
+    """Compute the modulus k L / A [Pa] of a uniform rod with the stack's axial stiffness k and length L, and the ceramic's section A.
 
     >>> round(effective_modulus(Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01)) / 1e9, 2)
     35.07

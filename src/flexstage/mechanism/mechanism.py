@@ -225,7 +225,7 @@ class StructuralDamping(Description):
 
 @dataclass(frozen=True, eq=False)
 class RayleighDamping(Description):
-    """Rayleigh damping: C = mass_factor M + stiffness_factor K."""
+    """Rayleigh damping: the damping matrix is `mass_factor` times the mass matrix plus `stiffness_factor` times the stiffness matrix."""
 
     mass_factor: Annotated[Number, RATE, NOT_NEGATIVE]
     stiffness_factor: Annotated[Number, TIME, NOT_NEGATIVE]

@@ -113,8 +113,9 @@ class Hertz:
 def hertz(part: Contact, material: Material) -> Hertz:
     """Compute Hertzian contacts of a ball: a flat carries the preload F, each wall of a groove of half angle h carries F / (2 sin h).
 
-    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, a = (3 F R / (4 E*))^(1/3), k_n = 2 E* a = (6 E*^2 R F)^(1/3) for the radius R. Without slip,
-    the tangential stiffness is k_t = 8 a G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2.
+    A ball of radius R and a seat with Young's moduli E1, E2, shear moduli G1, G2 and Poisson's ratios nu1, nu2 have the contact moduli E*,
+    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, and G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. For the force P of one contact, the contact radius
+    is a = (3 P R / (4 E*))^(1/3), the normal stiffness 2 E* a = (6 E*^2 R P)^(1/3), and without slip the tangential stiffness 8 a G*.
 
     Assumptions: isotropic materials, smooth faces, contact radius much smaller than the ball. Raises `DesignError` for a crystal, or if the
     seat's material is missing.
@@ -131,7 +132,8 @@ def hertz(part: Contact, material: Material) -> Hertz:
 def contact_stiffness(part: Contact, material: Material) -> Array:
     """Compute the stiffness (..., 6, 6) about the ball's centre: the sum over all contacts, without contact moments.
 
-    On a flat, rolling and spinning about the contact point are free. About the ball's centre, the stiffness has terms k_t R and k_t R^2.
+    On a flat, rolling and spinning about the contact point are free. About the ball's centre, the tangential stiffness times the radius, or
+    times its square, contributes to the terms for rotations.
 
     >>> steel = Material(young=210e9, poisson=0.3, density=7850.0)
     >>> ball = Contact("steel", "steel", radius=0.005, preload=10.0)

@@ -156,13 +156,14 @@ class Material(Description):
 
         The columns of `rotation` (..., 3, 3) are the part's axes in the stage. Isotropic materials are returned unchanged.
 
-        A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal, has 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
-        n3^2 n1^2). The strain ratio for the two axes is -E (S12 + J sum n^2 m^2), and 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix
-        & Kenny, J. MEMS 19 (2010) 229-238).
+        A cubic crystal has the compliance S = C^-1 and the anisotropy J = S11 - S12 - S44/2. For an axis with components n1, n2, n3 in the
+        crystal, Young's modulus E is given by 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 + n3^2 n1^2). With m1, m2, m3 of a second axis and q =
+        n1^2 m1^2 + n2^2 m2^2 + n3^2 m3^2, Poisson's ratio is -E (S12 + J q), and the shear modulus G is given by 1/G = S44 + 4 J q (Nye
+        1957; Hopcroft, Nix & Kenny, J. MEMS 19 (2010) 229-238).
 
-        Beams along x use E along x, and G of the planes xy and xz. For wide leaves, nu in the plate modulus E / (1 - nu^2) is -S13 / (S11
-        S33)^(1/2). In directions other than 100, 110 and 111, tension and bending are coupled with shear and twist; the material in part
-        axes omits this coupling.
+        Beams along x use E along x, and G of the planes xy and xz. For wide leaves, Poisson's ratio in the plate modulus E / (1 - nu^2) is
+        -S13 / (S11 S33)^(1/2), with the compliance S in the axes of the part. In directions other than 100, 110 and 111, tension and
+        bending are coupled with shear and twist; the material in part axes omits this coupling.
         """
         if not self.is_cubic:
             return self
@@ -187,7 +188,8 @@ class Material(Description):
     def stiffness_tensor(self, rotation: Array) -> Array:
         """Compute the stiffness (..., 6, 6) [Pa] of a crystal in the axes that the columns of `rotation` (..., 3, 3) give in the stage.
 
-        The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. With the crystal's axes q_a (Nye 1957):
+        The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. With the components q_ai of the crystal's three axes a, and
+        d_ij = 1 for i = j, else 0 (Nye 1957):
 
         C_ijkl = C12 d_ij d_kl + C44 (d_ik d_jl + d_il d_jk) + (C11 - C12 - 2 C44) sum_a q_ai q_aj q_ak q_al.
 
@@ -245,7 +247,7 @@ class Oriented(Material):
 
     @property
     def twist_ratio(self) -> Number:
-        """Ratio E / (2 G) with G of the x-z plane, for warping torsion of a leaf."""
+        """Young's modulus divided by twice the shear modulus of the x-z plane, for warping torsion of a leaf."""
         return self.modulus / (2.0 * self.shear)
 
     @property

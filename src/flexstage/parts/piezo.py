@@ -33,9 +33,9 @@ class Piezo(ChargedActuator, Shaped):
     """Piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands).
 
     `stroke` is the full free stroke over the voltage range, `stiffness` the axial stiffness k, and `diameter` the diameter of the ceramic.
-    The section of the ceramic determines the other stiffness terms, with the effective modulus E = k L / A. `bending_rigidity` is the EI of
-    a stack stiffened by its casing (default: the EI of the ceramic). The blocked force is stroke x stiffness. `maximum_load` is the largest
-    compression, `tensile_limit` the largest tension, both without preload.
+    The section A of the ceramic and the length L determine the other stiffness terms, with the effective modulus k L / A.
+    `bending_rigidity` is the bending rigidity of a stack stiffened by its casing (default: that of the ceramic). The blocked force is the
+    product of stroke and stiffness. `maximum_load` is the largest compression, `tensile_limit` the largest tension, both without preload.
     """
 
     kind: ClassVar[str] = "piezo"
@@ -60,7 +60,7 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def blocking_force(self) -> Number:
-        """Blocked force at full stroke: stroke x stiffness [N].
+        """Blocked force at full stroke [N], the product of stroke and stiffness.
 
         >>> round(Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01).blocking_force, 6)
         2550.0

@@ -53,9 +53,10 @@ class Drawn:
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Volume (...) [m^3] of a region, first moment (..., 3) [m^4] and second moment (..., 3, 3), the integral of r r^T [m^5].
+    """Moments of a region: volume (...) [m^3], first moment (..., 3) [m^4] and second moment (..., 3, 3) [m^5].
 
-    For a plane region: area (...) [m^2], first moment (..., 2) and second moment (..., 2, 2).
+    The moments are the integrals of 1, r and r r^T over the volume, for the position r. For a plane region they are the area (...) [m^2],
+    the first moment (..., 2) [m^3] and the second moment (..., 2, 2) [m^4].
     """
 
     volume: Array
@@ -101,8 +102,8 @@ class _Prism:
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """Yield densities and moments that correct the sum over a body's solids for their common volumes (most are negative).
 
-    A subtracted solid removes its intersection with other solids of the same material: P minus H is the union of P and H, minus H. Raises
-    `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not prisms along one axis.
+    A subtracted solid removes its intersection with other solids of the same material: a solid minus a hole is the union of both, minus the
+    hole. Raises `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not prisms along one axis.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity

@@ -105,7 +105,7 @@ def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
 
 
 def polytope_corners(normals: Array, offsets: Array) -> Array:
-    """Compute the corners (n, 3) of the polytope of all r with `normals` (k, 3) . r <= `offsets` (k,); empty if infeasible.
+    """Compute the corners (n, 3) of a polytope of k faces: all points r with `normals` . r <= `offsets`; empty if there is no such point.
 
     >>> len(polytope_corners(np.concatenate([np.eye(3), -np.eye(3)]), np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])))
     8
@@ -120,8 +120,8 @@ def polytope_corners(normals: Array, offsets: Array) -> Array:
 def distance(first: Array, second: Array) -> float:
     """Compute the distance [m] between the convex hulls of two point sets (n, 3); 0 if the hulls intersect.
 
-    The distance is 1 / |w| for the shortest w with w . (b - a) >= 1 for all a of the first, b of the second set. The vector w is found by
-    non-negative least squares (Lawson and Hanson 1974, chapter 23).
+    The distance is the reciprocal of the length of the shortest vector w for which w . (b - a) >= 1 for all points a of the first and b of
+    the second set. This vector is found by non-negative least squares (Lawson and Hanson 1974, chapter 23).
 
     >>> round(distance(cuboid((0, 0, 0), (1, 1, 1)).points, cuboid((2, 2, 0), (3, 3, 1)).points), 9)
     1.414213562

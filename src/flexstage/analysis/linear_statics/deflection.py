@@ -36,7 +36,7 @@ class Deflection(Result):
 
 @check_arguments
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
-    """Compute the deflection of a platform point under gravity and specified forces, q = K^-1 f, with strokes fixed.
+    """Compute the deflection of a platform point under gravity and specified forces, with strokes fixed.
 
     For the model of the loaded stage (see `load_effect`), the deflection is the motion from the unloaded to the loaded equilibrium, by the
     theory of large displacements. In this model, all loads together are one cause.

@@ -39,12 +39,12 @@ _FITS = 1e-7
 
 
 class Drift(Result):
-    """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
+    """Motion and forces due to a temperature field of unit size: uniform (1 K), or linear along x, y or z (1 K/m).
 
     `motion` has six components for the platform and for each named point. `gauges` are the readings, `forces` the six stress resultants of
     each elastic link. `ground` is the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the
     fixed point of the ground; linear temperature fields are zero there. `taken` names the material used for each body. `bodies` are the
-    twists (..., 6, 4) of all bodies at their reference points.
+    twists (..., 6, 4) of all bodies at their reference points, in the four fields.
     """
 
     motion: Matrix

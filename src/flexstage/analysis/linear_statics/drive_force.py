@@ -23,12 +23,13 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 
 
 class DriveForce(Result):
-    """Force per displacement along each coordinate, compared with the ideal guide.
+    """Drive force divided by the displacement along each coordinate, compared with the ideal guide.
 
-    The ideal guide has the same stiffness as the stage in the ideal DOFs of its flexures, and is rigid in all other DOFs. `force`
-    (coordinates x elastic, ideal) is the generalised force of the actuators per displacement. `shares` (links x coordinates) are the links'
-    fractions of the elastic displacement, which add up to 1. `excess` (links x coordinates) are the links' contributions to the relative
-    excess of the force.
+    The ideal guide has the same stiffness as the stage in the ideal DOFs of its flexures, and is rigid in all other DOFs. `force` is the
+    generalised force of the actuators divided by the displacement: a row for each coordinate, a column for the elastic stage and one for
+    the ideal guide. `shares` and `excess` have a row for each link and a column for each coordinate. The shares are the links' fractions of
+    the elastic displacement, which add up to 1. The excesses are the links' contributions to the total relative excess of the force over
+    the ideal guide's force.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -59,9 +60,10 @@ class DriveForce(Result):
 def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWorkspace) -> DriveForce:
     """Compare the elastic stage with its ideal guide under the inputs that move the platform along each coordinate.
 
-    By reciprocity, the displacement x_j is the sum of g_j^T k g_u over the links. Here g_j is a link's deformation under a unit load on the
-    platform along j, and g_u its deformation under the inputs u. If deformations are possible only in the free DOFs of the ideal joints,
-    this sum is the displacement of the ideal guide. Raises `DesignError` for batches and for large (sparse) stages.
+    By reciprocity, the displacement along coordinate j is the sum of g_j^T k g_u over all links. Here k is a link's stiffness, g_j its
+    deformation under a unit load on the platform along j, and g_u its deformation under the inputs. If deformations are possible only in
+    the free DOFs of the ideal joints, this sum is the displacement of the ideal guide. Raises `DesignError` for batches and for large
+    (sparse) stages.
 
     >>> import flexstage as fs
     >>> stage = fs.case("voice-coil-stage")

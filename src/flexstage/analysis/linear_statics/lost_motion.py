@@ -65,10 +65,11 @@ class ActuatorLoss:
 class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
-    `gain` is the elastic T = dx/da (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its
-    diagonal. `loss` is Lambda = I - transfer. `parasitic` is the component of T outside the ideal motions. `budget` has the contribution of
-    every link and axis to each entry of Lambda; their sum is Lambda. `correction` is the matrix (R_a V^+ T)^-1 R_a, which gives the
-    corrected strokes a of a motion xi. `energy` is the strain energy by part, per squared stroke.
+    `gain` T (..., 6, n) is the elastic motion of the platform per stroke. `transfer` is R_a V^+ T (..., n, n), with the transmission of
+    each actuator on its diagonal: V^+ projects T onto the coordinates of the ideal motions, and R_a maps these to strokes. `loss` Lambda is
+    the unit matrix minus `transfer`. `parasitic` is the component of T outside the ideal motions. `budget` has the contribution of every
+    link and axis to each entry of Lambda; their sum is Lambda. `correction` is the matrix (R_a V^+ T)^-1 R_a, which maps the coordinates of
+    a motion to the corrected strokes. `energy` is the strain energy of each part, divided by the square of the stroke of one actuator.
     """
 
     gain: Matrix
@@ -96,10 +97,11 @@ class LostMotion(Result):
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compute lost motion from an elastic model and the ideal kinematics of the same stage.
 
-    Lost motion is Lambda = I - R_a V^+ T. The budget of contributions by link is exact for any graph of links. By virtual work and
-    reciprocity, Lambda_ij = sum_e f_e^(i) . gamma_e^(j). Here f_e^(i) is the force of link e under the platform wrench (R_a V^+)^T e_i with
-    zero strokes. The vector gamma_e^(j) is the deformation of link e in the ideal motion of stroke j. For one unloaded lever, the diagonal
-    of Lambda is eps / (1 + eps) with eps = K_theta2 / (r_1^2 K_1) (equation 11 of Shin & Moon). Motions are small.
+    Lost motion is the matrix Lambda = I - R_a V^+ T, with the symbols of `LostMotion`. The budget of contributions by link is exact for any
+    graph of links. By virtual work and reciprocity, the entry Lambda_ij is the sum of f_e . gamma_e over all links e. Here f_e is the force
+    of link e with zero strokes under a platform wrench, row i of R_a V^+. The vector gamma_e is the deformation of link e in the ideal
+    motion of stroke j. For one unloaded lever, the diagonal of Lambda is eps / (1 + eps), with eps = K_theta2 / (r_1^2 K_1) for pivot
+    stiffness K_theta2, input arm r_1 and input stiffness K_1 (equation 11 of Shin & Moon). Motions are small.
 
     For a model linearised about a displaced state, the ideal motion is still that of the nominal position. The budget then requires the
     model `linearise(state, inner=False)`, and has the additional contribution `geometric` of the geometric stiffness. Raises `DesignError`

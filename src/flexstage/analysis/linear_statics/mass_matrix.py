@@ -26,7 +26,7 @@ _MASSLESS = "the body of this point has no specified mass"
 
 
 class MassMatrix(Result):
-    """Mass matrix at a point in the stage's axes: a velocity twist v has the kinetic energy v^T M v / 2.
+    """Mass matrix M at a point in the stage's axes: the kinetic energy is v^T M v / 2 for the point's velocity and angular velocity v.
 
     `rigid` (..., 6, 6) is the mass matrix of the point's `body` alone, with its payloads. `reduced` (..., 6, 6) includes the whole stage:
     all other masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA Journal 3, 380, 1965). `reduced` and the
@@ -46,10 +46,11 @@ class MassMatrix(Result):
 def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> MassMatrix:
     """Compute the mass matrix (..., 6, 6) of the platform or another body at its reference or a named point [kg, kg m, kg m^2].
 
-    M_rigid = X^T M X, with X the transport of twists from the point to the body's reference point. M_reduced = S^T M S, where S = K^-1 C^T
-    (C K^-1 C^T)^-1 are the static shapes for unit twists of the point with strokes fixed. The theory assumes small displacements, without
-    free internal modes. `reduced` is None for a point with fewer than six degrees of freedom, or with a free internal mode of its body.
-    `rigid` is None for a body without mass.
+    `rigid` is X^T M X: M is the body's mass matrix at its reference point, and X maps a twist of the point to the twist of the reference
+    point. `reduced` is S^T M S: M is the mass matrix of the model, and S = K^-1 C^T (C K^-1 C^T)^-1 are its static shapes for unit twists
+    of the point with strokes fixed. K is the stiffness of the model, and C maps its coordinates to the twist of the point. The theory
+    assumes small displacements, without free internal modes. `reduced` is None for a point with fewer than six degrees of freedom, or with
+    a free internal mode of its body. `rigid` is None for a body without mass.
 
     >>> import flexstage as fs
     >>> stage = fs.case("double-triangle")

@@ -23,8 +23,8 @@ Restrictions = Mapping[str, tuple[Freedoms, Freedoms]]
 class Omitted:
     """Responses of a simple theory and the full theory, and the effect of each omitted degree of freedom.
 
-    `changes` is the change of the simple response if one degree of freedom (`lever_notch.x`) regains its elasticity.
-    `interaction` = full - simple - sum of changes: the effect of combinations.
+    `changes` are the changes of the simple response if a single degree of freedom (`lever_notch.x`) regains its elasticity. `interaction`
+    is the effect of combinations: the full response minus the simple response, minus the sum of all changes.
     """
 
     output: str
@@ -35,17 +35,17 @@ class Omitted:
 
     @property
     def interaction(self) -> Annotated[float, RATIO]:
-        """Difference of the responses that the separate effects of single degrees of freedom do not explain."""
+        """Full response minus simple response, minus the separate effects of all single degrees of freedom."""
         return self.full - self.simple - sum(self.changes.values())
 
     @property
     def unexplained(self) -> Annotated[float, RATIO]:
-        """Magnitude of `interaction`, relative to the full response."""
+        """Magnitude of `interaction`, divided by that of the full response."""
         return abs(self.interaction / self.full)
 
 
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
-    """Compare the static responses with restricted and with full parts, for the `channel` = (output, input).
+    """Compare the static response of an output to an input, the names in `channel`, with restricted and with full parts.
 
     `simple` maps parts or links (`vertical/pivot`) to their elastic and their free degrees of freedom; all others are locked. Each locked
     or freed degree of freedom regains its elasticity individually. Batches are not supported.

@@ -50,11 +50,11 @@ class DirectionalStiffness:
 
     @property
     def spread(self) -> Annotated[Array, INNER, SHARE, Heading(digits=3)]:
-        """Difference of the principal stiffnesses (...), relative to the larger one."""
+        """Difference of the principal stiffnesses (...), divided by the larger one."""
         return 1.0 - self.softest / self.stiffest
 
     def along(self, angle: Number) -> Array:
-        """Return the stiffness along directions at `angle` [rad] from x: force over displacement in this direction, 1 / (n^T K^-1 n)."""
+        """Return the stiffness along directions n at `angle` [rad] from x: force divided by displacement along n, 1 / (n^T K^-1 n)."""
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         if not self.tensor.values.any(axis=-1).all():  # an axis without stiffness
             return np.zeros(direction.shape[:-1])
@@ -91,10 +91,10 @@ class Statics(Result):
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
     """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
 
-    The compliance is C = C_read K^-1 C_load^T, with strokes fixed and small displacements. If the platform has fewer than six degrees of
-    freedom in the model (the mapped model of a guide), the stiffness is infinite along the locked degrees of freedom. All entries of the
-    stiffness, and tensors derived from it, are then NaN; in a batch, the first design decides. Along an axis without stiffness, the
-    compliance is infinite.
+    Strokes are fixed, and displacements small. The compliance is C_read K^-1 C_load^T: K is the stiffness matrix of the model, and C_read
+    and C_load map its coordinates to the twists of the two points. If the platform has fewer than six degrees of freedom in the model (the
+    mapped model of a guide), the stiffness is infinite along the locked degrees of freedom. All entries of the stiffness, and tensors
+    derived from it, are then NaN; in a batch, the first design decides. Along an axis without stiffness, the compliance is infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -147,9 +147,9 @@ class FreedomStiffness(Result):
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
     """Compute the stiffness along each ideal motion and along each constraint of a stage with fewer than six ideal motions.
 
-    `found` is the statics at a point of the platform. The stiffness is 1 / C_ii with the other degrees of freedom free, and K_ii with the
-    other degrees of freedom fixed; NaN for a locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and
-    load points differ.
+    `found` is the statics at a point of the platform. The stiffness of a degree of freedom is the reciprocal of its diagonal entry in the
+    compliance if the others are free, and its diagonal entry in the stiffness if the others are fixed. It is NaN for a locked degree of
+    freedom. Returns None if the stage has six ideal motions, or if read-out and load points differ.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -219,8 +219,9 @@ def directional(tensor: Array) -> DirectionalStiffness:
 def centre_of_stiffness(stiffness: Array) -> Array:
     """Compute the centre of stiffness (..., 3) relative to the reference: the axial vector of the antisymmetric part of -K_tt^-1 K_tr.
 
-    At this point, the coupling of forces and rotations is minimal. If there is a fully uncoupled centre c, K_tr = -K_tt [c]x. Loncaric
-    (1987) gives another definition of the centre of stiffness.
+    K_tt and K_tr are the blocks of the stiffness that map translations and rotations to forces. At the centre, this coupling of rotations
+    and forces is minimal. If it vanishes at a point c, K_tr = -K_tt [c]x, with the cross-product matrix [c]x. Loncaric (1987) gives another
+    definition of the centre of stiffness.
 
     >>> from flexstage.spatial.frame import transport
     >>> carry = transport(np.array([0.0, 0.0, -0.025]))

@@ -20,8 +20,8 @@ class UnitOutput:
     """Output properties of one isolated unit, in its own frame.
 
     `unit` is the unit's name; `copy` is the analysed instance. `direction` (3,) is the direction of the output; `stiffness` is the 6x6
-    stiffness at the output with strokes fixed. If the output is guided along the direction, `gain` is the output per stroke, and
-    `ideal_gain` the gain without elasticity.
+    stiffness at the output with strokes fixed. If the output is guided along the direction, `gain` is the output motion divided by the
+    stroke, and `ideal_gain` the gain without elasticity.
     """
 
     unit: str
@@ -33,7 +33,7 @@ class UnitOutput:
 
     @cached_property
     def axial(self) -> Annotated[float, STIFFNESS, Heading("axial stiffness")]:
-        """Stiffness along the output direction with all other DOFs fixed [N/m]: n^T K n.
+        """Stiffness along the output direction n with all other DOFs fixed [N/m]: n^T K n, with the translational stiffness K.
 
         >>> values = np.diag([10.0, 2.0, 3.0, 1.0, 1.0, 1.0])
         >>> stiffness = Matrix(values, tuple("abcdef"), tuple("abcdef"), "N/m")
@@ -45,19 +45,19 @@ class UnitOutput:
 
     @cached_property
     def lateral(self) -> Annotated[tuple[float, float], STIFFNESS]:
-        """Least and largest stiffness across the output direction [N/m] with all other DOFs fixed: eigenvalues of K across it."""
+        """Least and largest stiffness perpendicular to the output direction [N/m], with all other DOFs fixed."""
         across = np.linalg.svd(self.direction[None, :])[2][1:]
         softest, stiffest = np.linalg.eigvalsh(across @ self._translations @ across.T)
         return float(softest), float(stiffest)
 
     @property
     def softest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("softest lateral", varying=True)]:
-        """Least stiffness across the output direction [N/m]."""
+        """Least stiffness perpendicular to the output direction [N/m]."""
         return self.lateral[0]
 
     @property
     def stiffest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("stiffest lateral", varying=True)]:
-        """Largest stiffness across the output direction [N/m]."""
+        """Largest stiffness perpendicular to the output direction [N/m]."""
         return self.lateral[1]
 
     @property

@@ -33,8 +33,9 @@ class UnitResult(UnitOutput):
     """Properties of one isolated unit by the lumped model.
 
     `loss` and `load_compliance` [m/N] are computed with the output guided along its direction. `series` is the unit's stiffness in actuator
-    coordinates for the mapped model (`None` if this model does not support the unit). For a lever unit, `lever` has the springs of lever
-    theory; `omitted` has the error of the gain by equation 3 for each degree of freedom.
+    coordinates for the mapped model (`None` if this model does not support the unit). For a lever unit, `lever` has the spring stiffnesses
+    of lever theory. `omitted` has the errors of the unit's gain by equation 3 of Shin & Moon, one for each degree of freedom that the
+    equation neglects.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -37,7 +37,7 @@ _SWITCH = {"on": 1.0, "off": 0.0}
 
 @dataclass(frozen=True, eq=False)
 class DrivePath:
-    """Load path: `values` (k,) [SI] of the `drive`, zero at the static equilibrium under `loads` and the fraction `weight` of the weight.
+    """Load path: `values` (k,) [SI] of the `drive`, zero at the static equilibrium under `loads` and a fraction `weight` of the weight.
 
     `locked` coordinates are fixed at their static equilibrium values.
     """

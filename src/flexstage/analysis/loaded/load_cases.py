@@ -46,7 +46,7 @@ _ENDS = 8
 
 @dataclass(frozen=True, eq=False)
 class LoadCase(CheckedFields):
-    """Load case: the load that `grows` at an operating point, as loads by name (including weight and specified forces).
+    """Load case: one load `grows` at an operating point; it consists of loads by name, which can be the weight or specified forces.
 
     `stays` contains the constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. A displaced
     coordinate remains free under the force that displaces it, unless the coordinate is `locked`. `gravity` is the fraction of the weight.
@@ -74,7 +74,7 @@ class LoadCase(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class CaseFactor:
-    """Critical load factor of a `load` at an operating point `place`, with the `kind` of critical point and the `buckling_mode`.
+    """Critical load factor of a `load` at the operating point `place`, with the `kind` of critical point and the `buckling_mode`.
 
     `factor` is infinite if the stage is stable up to the largest factor, and NaN if unknown; `why` is the reason. `bound` is the factor up
     to which the stage is known to be stable, NaN if unknown.
@@ -181,7 +181,7 @@ def _own(mechanism: Mechanism) -> Iterator[str]:
 
 
 def path_cases(mechanism: Mechanism, name: str, places: Mapping[str, float] | None = None) -> Iterator[LoadCase]:
-    """Return the load cases of one path: at both ends, or at named `places` of its drive [SI].
+    """Return the load cases of one path: at both ends, or at the values of its drive in `places`, by name [SI].
 
     >>> from flexstage.cases.registry import case
     >>> [each.place for each in path_cases(case("long-travel-xy"), "x")]

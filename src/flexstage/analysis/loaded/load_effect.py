@@ -105,10 +105,10 @@ class LoadEffect:
 def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     """Compute the effect of the permanent load on a stage; `None` for a batch of designs or an unknown load factor.
 
-    By linearised buckling, the permanent load reduces no stiffness by more than the fraction 1 / load factor; `Stability.stiffens` is the
-    limit for an increase of stiffness. A change that may be 1 % or more is computed in the nominal position. A significant change is
-    computed again with large displacements. Stages with flexures that are not straight when free are always computed with large
-    displacements. Raises `DesignError` if the stage has no elastic model.
+    By linearised buckling, the permanent load reduces no stiffness by a larger fraction than the reciprocal of the load factor, and
+    increases no stiffness by a larger fraction than `Stability.stiffens`. A change that may be 1 % or more is computed in the nominal
+    position. A significant change is computed again with large displacements. Stages with flexures that are not straight when free are
+    always computed with large displacements. Raises `DesignError` if the stage has no elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> load_effect(parallelogram()).model is None

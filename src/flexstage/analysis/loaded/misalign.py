@@ -37,13 +37,15 @@ _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 class Misaligned(Result):
     """Result for an instance `copy`, misaligned on the ground along (x, y, z) or about (rx, ry, rz) an axis of the instance's frame.
 
-    `along` has a row for each misalignment, with the load that forces the instance into this position, and the first frequencies. Further
-    columns are the largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` contains the equilibria.
-    `loads` are the wrenches at the largest misalignment on the end of each flexure, in the frame at the flexure's start.
+    The table `along` has a row for each misalignment. Its columns are the misalignment, the load that forces the instance into this
+    position, the first frequencies, the largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state`
+    contains the equilibria. `loads` are the wrenches on the ends of the flexures at the largest misalignment, each in the frame at the
+    flexure's start.
 
     `critical` is the misalignment at which the first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment
-    known to be stable. `followed` is `critical`, 0.1 rad, 0.1 times the longest flexure, or the end of the computed path, whichever is
-    reached first. Stable states beyond `critical` belong to another branch and have no values.
+    up to which the stage is known to be stable: `critical`, or the end of the computed path. This path ends at the latest at 0.1 rad for a
+    rotation, and at 0.1 times the length of the longest flexure for a translation. Stable states beyond `critical` belong to another branch
+    and have no values.
     """
 
     copy: str
@@ -88,10 +90,10 @@ class Misalignments(Result):
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
     """Compute, with large displacements, the internal loads of a stage if the seat of an instance or link on the ground is misaligned.
 
-    The seat connects the instance's links to the ground. The seat moves by `size` [m, rad] along or about an axis of the instance's frame,
-    at `points` values from zero. The centre of rotation is the origin of the instance's frame, or the middle of a link. The weight is
-    included. Motions without redundant constraints remain free. Raises `DesignError` for unknown names and for instances that are not
-    connected to the ground.
+    The seat connects the instance's links to the ground. The seat moves along or about an axis of the instance's frame, to a number
+    `points` of equally spaced values from zero to `size` [m, rad]. The centre of rotation is the origin of the instance's frame, or the
+    middle of a link. The weight is included. Motions without redundant constraints remain free. Raises `DesignError` for unknown names and
+    for instances that are not connected to the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = misalign(parallelogram(), "left", "ry", 1e-3, points=3)

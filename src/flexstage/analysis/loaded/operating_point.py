@@ -52,7 +52,7 @@ class OperatingPoint(Result):
 
     @cached_property
     def links(self) -> LinearModel:
-        """Linearised model for lost motion: flexures have no inner coordinates and follow their ends quasi-statically."""
+        """Model linearised for lost motion: its flexures have no inner coordinates and follow their ends quasi-statically."""
         return linearise(self.state, locked=self.locked, inner=False)
 
     @property
@@ -76,7 +76,7 @@ def operating_point(
     `temperature` (a uniform change [K]). `at` then displaces coordinates from this equilibrium by forces of constant direction:
     `platform.y` [m], or `platform.rz` [rad], a component of the rotation vector. `at` can also contain strokes, by stack name; the
     operating point is computed with these strokes. In the linear model, the coordinates displaced by `at` are free, and the displacing
-    forces are constant. Coordinates in `fixed` are fixed at their equilibrium value, or at the value in `at`.
+    forces are constant. The coordinates named in `fixed` are fixed at their equilibrium value, or at the value in `at`.
 
     Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium. The error then reports the largest fraction
     of the displacement that has an equilibrium. `DesignError` is also raised if the stage is unstable under the forces.

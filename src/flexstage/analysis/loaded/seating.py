@@ -28,9 +28,9 @@ _RANK = 1e-9
 class Seating:
     """Contact loads of a ball in its seat, at the worst contact.
 
-    `left` (...) is the ratio of the least normal force to the preload; the ball lifts off at zero. `slip` is the ratio of the tangential
-    force to the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is the ratio of
-    `pressure` to the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
+    `left` (...) is the least normal force divided by the force due to the preload; the ball lifts off at zero. `slip` is the tangential
+    force divided by the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is the
+    ratio of `pressure` to the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
     """
 
     left: Array

@@ -38,10 +38,10 @@ class Stroke(Result):
     """Characteristics of a stage over the stroke of a `drive`. The matrix `along` has a row for each point.
 
     Columns are the drive's value, the holding force and stiffness of a driven coordinate, and the platform's displacement and rotation
-    vector. `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies (with the
-    coordinate free under the holding force), the largest stress and strain of a flexure, and the number of unstable modes (0: stable).
-    Drive and displacements are relative to the static deflection `sag` under weight and loads; if `sag` is None, relative to the nominal
-    position.
+    vector. For a stack, the column `lost` is its lost motion divided by its stroke. Further columns are the platform's first natural
+    frequencies (with the coordinate free under the holding force), the largest stress and strain of a flexure, and the number of unstable
+    modes (0: stable). Drive and displacements are relative to the static deflection `sag` under weight and loads; if `sag` is None,
+    relative to the nominal position.
     """
 
     drive: str
@@ -70,8 +70,9 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
     """Compute the characteristics over a stroke, point by point (equations 25 to 28 of docs/nonlinear.md).
 
     Frequencies are NaN if the free stage is unstable. Loads and weight are those of `path`. The drive and displacements are relative to
-    `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a. Here
-    t is the platform's displacement and rotation vector, and a the stroke. R_a and V are computed in the nominal position (`lost_motion`).
+    `rest`, if specified. With the ideal `kinematics` of the stage, the relative lost motion of a driven stack is 1 - R_a V^+ t / a. Here t
+    is the platform's displacement and rotation vector relative to `rest`, and a the stroke. V^+ maps t to the coordinates of the ideal
+    motions, and R_a maps these to the stroke; both are computed in the nominal position (see `lost_motion`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path

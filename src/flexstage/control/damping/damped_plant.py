@@ -29,8 +29,8 @@ _SLOW, _LINES = 1e-3, 200
 class DampedMode:
     """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, `damped_frequency` and `damped_ratio` with them.
 
-    `zero` [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio with one leg or decoupled legs, (w
-    - z)/(2 z). `alone` is the damping ratio of the isolated mode with the present gain.
+    `zero` z [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio with one leg or decoupled legs,
+    (w - z)/(2 z), with the `frequency` w. `alone` is the damping ratio of the isolated mode with the present gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -116,7 +116,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def around_legs(
     given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
 ) -> System:
-    """Connect an inner system to each leg: from `tension.<actuator>` [N], the tension plus one of `heard`, to a further stroke."""
+    """Connect an inner system to each leg: from `tension.<actuator>` [N] (with one of the inputs `heard` as noise) to an added stroke."""
     entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
     for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
         links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
@@ -125,7 +125,7 @@ def around_legs(
 
 
 def with_series_stiffness(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
-    """Return the legs with the effective stiffness of stack and hinges in series: the tension per stroke far above the plant's modes."""
+    """Return the legs with the effective stiffness of stack and hinges in series: tension divided by stroke far above the plant's modes."""
     forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
     slow = np.array([not name.startswith("amplifier.") for name in given.states])
     direct = np.diag(residualise(forces, slow).D)
@@ -139,7 +139,7 @@ def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
 
 
 def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains: Array) -> Array:
-    """Compute the poles (len(gains), k) [1/s] of the plant's modes for increasing `gains`, each tracked from its mode (root locus)."""
+    """Compute the poles [1/s] of the plant's modes (columns) for increasing `gains` (rows), each tracked from its mode (root locus)."""
     modes, found = _modal_poles(given), []
     for gain in gains:
         poles = close_damping(given, replace(law, gain=float(gain)), legs).system.poles
@@ -190,7 +190,7 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are modes with and without axial stiffness."""
+    """Summarise the inner loops' effect on modes and platform stiffness; `pairs` are modes with and without axial leg stiffness."""
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []

@@ -14,13 +14,14 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True)
 class ForceFeedback:
-    """Integral force feedback: stroke = G(s) T / k for tension T [N]; G = g / (s + a) for `order` 1, g s / (s + a)^2 for `order` 2.
+    """Integral force feedback: the stroke is G(s) times the leg's tension divided by its axial stiffness.
 
-    k [N/m] is the axial stiffness, `gain` g [1/s], `corner` a / (2 pi) [Hz] of the high-pass filter (Preumont, Dufour & Malekian, J. Guid.
-    Control Dyn. 15 (1992) 390; Preumont, Vibration Control of Active Structures, 2018, ch. 7 and 8). Without the high-pass filter, the leg
-    would have no static stiffness, and the feedback would cancel every command. Order 1 keeps the fraction a / (a + g) of the static
-    stiffness. Order 2 keeps the whole static stiffness, and more than half the dynamic stiffness below a^2 / g. `lag` [Hz] is the corner of
-    the sensor's electronics. The `delay` [s] is modelled by a second-order Pade approximation. Raises `DesignError` for invalid numbers.
+    The law G(s) is g / (s + a) for `order` 1 and g s / (s + a)^2 for `order` 2. `gain` is g [1/s], and `corner` is the corner frequency a /
+    (2 pi) [Hz] of the high-pass filter (Preumont, Dufour & Malekian, J. Guid. Control Dyn. 15 (1992) 390; Preumont, Vibration Control of
+    Active Structures, 2018, ch. 7 and 8). Without the high-pass filter, the leg would have no static stiffness, and the feedback would
+    cancel every command. Order 1 keeps the fraction a / (a + g) of the static stiffness. Order 2 keeps the whole static stiffness, and more
+    than half the dynamic stiffness below the angular frequency a^2 / g. `lag` [Hz] is the corner of the sensor's electronics. The `delay`
+    [s] is modelled by a second-order Pade approximation. Raises `DesignError` for invalid numbers.
     """
 
     gain: float
@@ -72,7 +73,10 @@ class ForceFeedback:
 
     @property
     def kept_below(self) -> float:
-        """Frequency [Hz] below which a leg keeps over half its axial stiffness: a^2 / (2 pi g); order 1 has 0 for g > a, else infinity."""
+        """Frequency [Hz] below which a leg keeps over half its axial stiffness.
+
+        This frequency is a^2 / (2 pi g) for order 2. For order 1 it is 0 if g > a, and infinite otherwise.
+        """
         turning = 2.0 * np.pi * self.corner
         if self.order == 1:
             return 0.0 if self.gain > turning else np.inf
@@ -80,11 +84,11 @@ class ForceFeedback:
 
 
 def most_damping(frequency: float, zero: float) -> float:
-    """Compute the maximum damping of a mode by integral force feedback, (w - z) / (2 z).
+    """Compute the maximum damping ratio of a mode by integral force feedback, (w - z) / (2 z).
 
-    w is the mode's frequency, z its frequency without the actuators' axial stiffness. The result is valid for one leg, or for decoupled
-    legs with equal gains (Preumont 2018, ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). A
-    result above 1 means that the mode can be overdamped.
+    Here w is the mode's angular frequency, and z its angular frequency without the actuators' axial stiffness. The result is valid for one
+    leg, or for decoupled legs with equal gains (Preumont 2018, ch. 7). The poles s solve s^3 + g s^2 + w^2 s + g z^2 = 0; the gain of
+    maximum damping is g = w (w/z)^(1/2), for which one root is -(w z)^(1/2). A result above 1 means that the mode can be overdamped.
 
     >>> most_damping(110.0, 100.0)
     0.05
@@ -93,9 +97,9 @@ def most_damping(frequency: float, zero: float) -> float:
 
 
 def damping_of_pair(law: ForceFeedback, frequency: float, zero: float) -> complex:
-    """Compute the pole [1/s] of an undamped mode with feedback, tracked from j w while the gain g grows.
+    """Compute the pole [1/s] of an undamped mode with feedback, tracked while the gain grows from zero to that of the law.
 
-    The pole is a root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0.
+    The pole is a root s of 1 + G(s) (s^2 + z^2) / (s^2 + w^2) = 0, with the angular frequencies w and z of `most_damping`.
 
     >>> pole = damping_of_pair(ForceFeedback(2.4 * np.pi * 1.2**0.5, 1e-6, order=1), 1.2, 1.0)
     >>> round(-pole.real / abs(pole), 5)

@@ -22,7 +22,7 @@ _NEXT_TO_NOTHING = 1e-9
 
 @dataclass(frozen=True)
 class Leg:
-    """Leg of an actuator: `link` is its stack, of axial `stiffness` [N/m]; `sensed` is the link whose tension is measured.
+    """Leg of an actuator: `link` is its stack, with axial `stiffness` [N/m]; `sensed` is the link whose tension is measured.
 
     `noise` [N/Hz^(1/2)] and `lag` [Hz] belong to the strain gauge of the leg; both are None for a force sensor.
     """

@@ -15,10 +15,10 @@ from flexstage.control.damping.legs import Leg
 class SampledLegs:
     """Force feedback in the legs of `actuators` (m,), sampled every `step` [s]: `turns` samples during one sample of the pose loop.
 
-    The feedback G = g s / (s + a)^2 (for `order` 1: g / (s + a)) is discretised by Tustin's rule. The tensions are multiplied by `gains` g
-    / (a k) (m,) [m/N] and filtered by the low-pass filter a / (s + a). For order 2, the result of a second low-pass filter is subtracted
-    from the output of the first filter. The computation is accurate in single precision even with slow poles. `share` is a T / (2 + a T),
-    with the time `step` T.
+    The law G(s) of `ForceFeedback` is discretised by Tustin's rule. The tensions are multiplied by `gains` (m,) [m/N], g / (a k) for the
+    gain g, the corner a [1/s] and the axial stiffness k of a leg, and filtered by the low-pass filter a / (s + a). For order 2, the result
+    of a second low-pass filter is subtracted from the output of the first filter. The computation is accurate in single precision even with
+    slow poles. `share` is a T / (2 + a T), with T = `step`.
     """
 
     actuators: tuple[str, ...]

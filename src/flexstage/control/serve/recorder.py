@@ -36,7 +36,7 @@ class Recorder:
         self.points[table] = np.empty(0)
 
     def take(self, found: Series, scale: Array, volts: Array) -> None:
-        """Record points from the simulated samples `found`; `scale` (f,) converts SI units."""
+        """Record points from the simulated samples `found`; `scale` (f,) converts each axis from SI units to the unit of the axis."""
         if not self._left:
             return
         rows = slice(self._skip, self._skip + self._left * self.rate, self.rate)

@@ -53,8 +53,8 @@ class DetunedController:
 
     All values (g,) are computed without amplifier limits, and with rounding treated as white noise. `rejection` is the lowest sensitivity
     crossover and `delay_margin` the smallest delay margin of all loops. `settling` is the longest settling time (NaN: longer than the
-    simulated step). `noise` is the rms in regulation, the geometric mean of all loops with rotations converted to lengths (empty: no
-    disturbance).
+    simulated step). `noise` is the rms error in regulation with rotations converted to lengths: the geometric mean over all loops (empty:
+    no disturbance).
     """
 
     gains: Annotated[Array, RATIO]
@@ -68,11 +68,12 @@ class DetunedController:
 class ComparedController:
     """Result of one controller for the loop's `coordinates`; `units` are the units of `noise`.
 
-    `peak` is the peak of S of the coupled loops, `rejection` the first crossing of |S| = 1, `noise` the rms in regulation. `settling` is
-    the 2 % settling time (infinite: not settled). `overshoot` is relative to the step. `delay_margin` is the smallest delay margin of all
-    loops. `gauge_share` is the largest fraction of a coordinate's mean-square noise that gauge noise and quantisation cause (absent: no
-    disturbance). `tuned` describes the tuning, `detuned` is the same controller with reduced gain. `slowly_rounding` are gauges whose
-    rounding is not white, although `noise` assumes white rounding. `warnings` are those of the loop study.
+    `peak` is the peak sensitivity of the coupled loops, `rejection` the first frequency where a coordinate's sensitivity rises through 1,
+    `noise` the rms error of a coordinate in regulation. `settling` is the 2 % settling time (infinite: not settled). `overshoot` is a
+    fraction of the step. `delay_margin` is the smallest delay margin of all loops. `gauge_share` is the largest fraction of a coordinate's
+    mean-square noise that gauge noise and quantisation cause (absent: no disturbance). `tuned` describes the tuning, `detuned` is the same
+    controller with reduced gain. `slowly_rounding` are gauges whose rounding is not white, although `noise` assumes white rounding.
+    `warnings` are those of the loop study.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -106,7 +107,7 @@ class ComparedController:
 
     @property
     def worst_noise(self) -> Annotated[tuple[str, ...], INNER, Heading("positioning noise")]:
-        """Largest rms value of the translations, and largest of the rotations."""
+        """Largest rms noise of a translation, and largest rms noise of a rotation."""
         largest = {unit: max(value for value, own in zip(self.noise, self.units, strict=True) if own == unit) for unit in self.units}
         return tuple(f"{1e9 * value:.3g} n{unit}" for unit, value in largest.items())
 
@@ -122,7 +123,7 @@ class ComparedController:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Criteria by name (smaller is better): the worst of all coordinates, but for noise (if any) the mean of its logarithm."""
+        """Criteria by name (smaller is better): the worst of all coordinates; for noise (if any), the mean of their logarithms."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),

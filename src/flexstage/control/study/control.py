@@ -53,7 +53,7 @@ class SingleLoop:
 
     @property
     def notch_filters(self) -> Annotated[tuple[str, ...], INNER, Heading("notch filters")]:
-        """Frequency of each notch, and gain at this frequency."""
+        """Text with the frequency of each notch, and its gain at this frequency."""
         return tuple(f"{each.frequency:.5g} Hz (gain {each.depth:.3g})" for each in self.notches)
 
 
@@ -61,7 +61,7 @@ class SingleLoop:
 class Control:
     """Controller as a system, with its components and its tuning (`None` for specified gains).
 
-    `gains` (n, f) map poses to strokes: R_a, or gains that correct lost motion.
+    `gains` (n, f) map poses to strokes: by the ideal kinematics, or with a correction of lost motion.
     """
 
     system: System

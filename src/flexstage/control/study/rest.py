@@ -23,10 +23,10 @@ from flexstage.models.theory import Model
 
 @dataclass(frozen=True, eq=False)
 class RestErrors(InNotebook):
-    """Static errors of a stage commanded with R_a (`ideal_map`), or with lost-motion gains of the same model (`lost_motion_gains`).
+    """Static errors of a stage with strokes from the ideal kinematics (`ideal_map`), or corrected for lost motion (`lost_motion_gains`).
 
-    `other_gains` is the error with the lost-motion gains of another model, `other_model` (`None` if that model does not apply). `load` (6,)
-    [m, rad] is the platform's deflection under all its loads with fixed actuators. `load_strokes` (n,) [m] are the strokes that cancel this
+    `other_gains` is the error with lost-motion gains of another model, `other_model` (`None` if that model does not apply). `load` (6,) [m,
+    rad] is the platform's deflection under all its loads with fixed actuators. `load_strokes` (n,) [m] are the strokes that cancel this
     deflection as far as possible; `load_left` (6,) is the remaining deflection.
     """
 

@@ -49,8 +49,8 @@ def _settled(time: float) -> Mark:
 class StepAnswer:
     """Response of one coordinate to a step of `size` [`unit`], with its `settling` time [s] (infinite: not settled).
 
-    `overshoot` is relative to the step. `residual` [`unit`] is the true error at the end. `others` are the largest motions along all other
-    platform axes. `largest` (f,) [m, rad] are the largest true errors of all coordinates.
+    `overshoot` is a fraction of the step. `residual` [`unit`] is the true error at the end. `others` are the largest motions along all
+    other platform axes. `largest` (f,) [m, rad] are the largest true errors of all coordinates.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -85,9 +85,9 @@ class StepAnswer:
 
 @dataclass(frozen=True)
 class CoilHeat:
-    """Thermal load of a force actuator in a repeated trajectory: `rms` input, and the continuous limit `held`, both in `unit`.
+    """Thermal load of a force actuator in a repeated trajectory: `rms` of its input, and continuous limit `held` of the input.
 
-    `power` [W] is the dissipated power, `warming` [K] the steady temperature rise; both are absent without data.
+    Both have the unit `unit`. `power` [W] is the dissipated power, `warming` [K] the steady temperature rise; both are absent without data.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -137,12 +137,12 @@ class LegUse:
 
     @property
     def stroke_share(self) -> Annotated[float, INNER, Heading("stroke / limit", digits=3, unit="%")]:
-        """Largest total stroke relative to the amplifier's limit."""
+        """Largest total stroke, divided by the amplifier's limit."""
         return self.largest / self.reach
 
     @property
     def speed_share(self) -> Annotated[float | None, INNER, Heading("speed / limit", digits=3, unit="%")]:
-        """Largest rate of the total stroke, relative to the amplifier's limit; absent without a limit."""
+        """Largest rate of the total stroke, divided by the amplifier's limit; absent without a limit."""
         return None if np.isinf(self.slew) else self.fastest / self.slew
 
 
@@ -202,8 +202,8 @@ def runs(
 
     Steps are simulated without noise, other trajectories with noise. Gauge resolution and amplifier limits apply. The stacks have the
     hysteresis of `stacks`, compensated by the inverse model if specified. A loop is simulated until it has settled (see `rest_time`), or
-    for the set-up's duration. `offset` (n,) [m] are strokes already used by loads. Raises `DesignError` for unknown coordinates, and for
-    trajectories beyond the strokes.
+    for the set-up's duration. `offset` (n,) [m] are strokes that compensate for loads; they reduce the available range. Raises
+    `DesignError` for unknown coordinates, and for trajectories beyond the strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.systems.closed import loop
@@ -326,7 +326,7 @@ def _resting_loop(given: ResolvedSetup, control: Control, closed: Loop) -> tuple
 
 @dataclass(frozen=True, eq=False)
 class RestRms:
-    """Rms (f,) of the true motion of the loop's coordinates in regulation, from independent simulations.
+    """Rms (f,) of the true motion of each of f coordinates in regulation, from independent simulations.
 
     `low` and `high` (f,) are the 95 % confidence limits, from the scatter of `count` simulations that last `seconds` each.
     """

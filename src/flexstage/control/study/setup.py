@@ -83,7 +83,7 @@ class AxisAmplitudes(CheckedFields):
 
 @dataclass(frozen=True)
 class GaugeSetup(CheckedFields):
-    """Gauges: density of white `noise`, quantisation step `resolution`, `bandwidth`. Defaults: the values in the design.
+    """Gauges: amplitude density of white `noise`, quantisation step `resolution`, and `bandwidth`. Defaults: the values in the design.
 
     `filter_order` and `filter_corner` describe an analogue low-pass filter (Butterworth) before the sampler (order 0: no filter).
     """
@@ -99,7 +99,8 @@ class GaugeSetup(CheckedFields):
 class VibrationSetup(CheckedFields):
     """Floor vibration along one axis: a named `criterion`, or amplitude densities of `acceleration`, `velocity` or `displacement`.
 
-    A single density is white noise. Densities at several `frequencies`, one for each, are interpolated in log-log, and zero outside.
+    A single density is white noise. If there is a density for each of several `frequencies`, the logarithm of the density is interpolated
+    linearly over the logarithm of the frequency; outside these frequencies the density is zero.
     """
 
     criterion: Criterion | None = None
@@ -157,9 +158,9 @@ class GoalSetup(CheckedFields):
     """Specification of optimisation-based tuning: its `objective`, and limits for every loop.
 
     The limits are the lowest permitted sensitivity crossover `rejection`, the longest 2 % settling time `settling`, the largest `overshoot`
-    of a step response and the smallest `delay_margin`. By default, only the overshoot is limited. The limit on the peak of S applies to all
-    relative mode shifts up to `spread` and relative gain errors up to `gain`. With `prefilter`, a prefilter of the reference is also
-    optimised.
+    of a step response and the smallest `delay_margin`. By default, only the overshoot is limited. The limit on the peak of the sensitivity
+    applies to all relative mode shifts up to `spread` and relative gain errors up to `gain`. With `prefilter`, a prefilter of the reference
+    is also optimised.
     """
 
     objective: TuningObjective = TuningObjective.BALANCE
@@ -177,12 +178,12 @@ class ControllerSetup(CheckedFields):
     """Controller: its `kind`, the coordinates of its loops, and either a specification for tuning or specified gains.
 
     The default kind is PI; for force-driven stages without specified gains it is PID. The specification consists of `sensitivity`, the
-    highest permitted peak of S, and of `bandwidth`, the gain crossover (default: the highest that `sensitivity` allows). The gains
-    `proportional`, `integral` and `derivative`, with the corner `filter` of the derivative, apply to all loops; `loops` override them for
-    single loops. `notches` are added to the automatic notches. `prefilter` filters the reference.
+    highest permitted peak of the sensitivity, and of `bandwidth`, the gain crossover (default: the highest that `sensitivity` allows). The
+    gains `proportional`, `integral` and `derivative`, with the corner `filter` of the derivative, apply to all loops; `loops` override them
+    for single loops. `notches` are added to the automatic notches. `prefilter` filters the reference.
 
-    By default, PI and PID are optimised for the `goal` balance, with a peak of S of at most `sensitivity`. `quick`, a bandwidth, gains or
-    notches disable the optimisation.
+    By default, PI and PID are optimised for the `goal` balance, with a peak of the sensitivity of at most `sensitivity`. `quick`, a
+    bandwidth, gains or notches disable the optimisation.
     """
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
@@ -223,10 +224,10 @@ class DampingSetup(CheckedFields):
 
     `ratio` is the required damping ratio of the modes with the largest residues; `gain` specifies the feedback directly. `corner` is the
     corner of a high-pass filter (default: a tenth of the lowest frequency that these modes have without the stacks' stiffness). A filter of
-    `order` 2 preserves the static stiffness; order 1 reduces it to the fraction a / (a + gain), with a = 2 pi `corner`. The tension is
-    measured by a force sensor in each leg, with white `noise`, or by strain `gauges` on links of the legs. The design specifies noise and
-    bandwidth of the strain gauges. `lag` and `delay` describe the electronics of analogue feedback. With `rate`, an integer multiple of the
-    loop's sampling rate, a computer runs the feedback; the default `delay` is then one sample of this rate.
+    `order` 2 preserves the static stiffness of a leg; order 1 multiplies it by a / (a + `gain`), where a is 2 pi times `corner`. The
+    tension is measured by a force sensor in each leg, with white `noise`, or by strain `gauges` on links of the legs. The design specifies
+    noise and bandwidth of the strain gauges. `lag` and `delay` describe the electronics of analogue feedback. With `rate`, an integer
+    multiple of the loop's sampling rate, a computer runs the feedback; the default `delay` is then one sample of this rate.
     """
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
@@ -242,7 +243,7 @@ class DampingSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class FollowSetup(CheckedFields):
-    """Tracking method for a trajectory known in advance; the error is relative to the trajectory.
+    """Tracking method for a trajectory known in advance; the error is the difference of the motion and the trajectory.
 
     `method` is the inverse of the modelled loop, iterative learning (with `passes` and `gain`), or repetitive control (with `gain`) of a
     periodic path: raster or sine. Inverse, learning and repetitive control act only at frequencies where relative mode shifts up to
@@ -259,11 +260,11 @@ class FollowSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class HystereticStacks(CheckedFields):
-    """Hysteresis of the stacks: a model in a `file` of `flexstage hysteresis`, or only the loop's `width` relative to the stroke.
+    """Hysteresis of the stacks: a model in a `file` of `flexstage hysteresis`, or only the loop's `width` as a fraction of the stroke.
 
     The model is scaled to each stack's stroke and voltage, and defines the inverse. `plant` selects the simulated stacks: the model itself,
     or Bouc-Wen stacks of equal width, whose hysteresis the inverse does not cancel exactly. The default of `plant` is the model if a `file`
-    is specified, and Bouc-Wen if a `width` is specified. `creep` is the creep per decade of time after 0.1 s, relative to the stroke
+    is specified, and Bouc-Wen if a `width` is specified. `creep` is the creep per decade of time after 0.1 s, as a fraction of the stroke
     (default: the creep in the file).
     """
 
@@ -293,7 +294,8 @@ class StepMotion(CheckedFields):
 class RasterMotion(CheckedFields):
     """Raster scan: `lines` of a `length`, a `pitch` apart, at constant `speed`, with reversals at an `acceleration`.
 
-    The lines are along the axis `fast`, the pitch along `slow`. For rotations a metre represents a radian: 20 um along rx are 20 urad.
+    The lines are along the axis `fast`, the pitch along `slow`. For rotations a metre represents a radian: a length of 20 um along rx is a
+    rotation of 20 urad.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "raster")

@@ -43,8 +43,8 @@ _TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
 class Stacks:
     """Stacks of the actuators: `plant` is their simulated behaviour, `model` the inverted model, both from volts to strokes [m].
 
-    `electric` converts strokes to voltages. `width` (n,) is the plant's loop width relative to the stroke. `creep` acts after the
-    hysteresis (`None`: no creep).
+    `electric` converts strokes to voltages. `width` (n,) is the width of the plant's hysteresis loop divided by the stroke, for each stack.
+    `creep` acts after the hysteresis (`None`: no creep).
     """
 
     electric: Drive
@@ -56,10 +56,10 @@ class Stacks:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Open-loop sweep with decreasing amplitude: `wanted` (k, n) [m] are the requested strokes.
+    """Open-loop sweep of n stacks with decreasing amplitude: `wanted` (k, n) [m] are the requested strokes at k times.
 
-    `bare` and `inverse` (k, n) [m] are the actual strokes without and with the inverse model. `width` (n,) is each stack's loop width
-    relative to its stroke.
+    `bare` and `inverse` (k, n) [m] are the actual strokes without and with the inverse model. `width` (n,) is the width of each stack's
+    hysteresis loop, divided by its stroke.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -81,17 +81,17 @@ class Sweep:
 
     @property
     def rms_error(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error", digits=3)]:
-        """Rms error (n,) of the strokes relative to the swept range."""
+        """Rms error (n,) of the strokes during the sweep, divided by the swept range."""
         return self._error(self.bare)
 
     @property
     def rms_error_inverse(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error with inverse", digits=3)]:
-        """Rms error (n,) with the inverse model, relative to the swept range."""
+        """Rms error (n,) of the strokes with the inverse model, divided by the swept range."""
         return self._error(self.inverse)
 
     @property
     def improvement(self) -> Annotated[Array, Along("actuators"), Heading("improvement factor", digits=3, infinite="exact")]:
-        """Ratio of the errors without and with the inverse model (n,); infinite if the inverse is exact within rounding error."""
+        """Error without the inverse model divided by the error with it (n,); infinite if the inverse is exact within rounding error."""
         exact = self.rms_error_inverse <= _EXACT
         return np.where(exact, np.inf, self.rms_error / np.where(exact, 1.0, self.rms_error_inverse))
 
@@ -157,7 +157,7 @@ def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> 
 
 
 def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
-    """Compute the widths (n,) of each stack's settled loop over its own voltage range, relative to its stroke.
+    """Compute the width (n,) of each stack's settled hysteresis loop over its own voltage range, divided by its stroke.
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
     >>> loop_widths(bouc_wen(150e-6, (0.0, 1000.0), 0.1), [(0.0, 1000.0)]).round(3).tolist()

@@ -148,12 +148,12 @@ class LoopStudy(InNotebook):
 
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
-        """Highest frequency [Hz] of the f lowest platform modes, for f loop coordinates."""
+        """Highest frequency [Hz] of the lowest platform modes, as many as the loop has coordinates."""
         return self.settled.highest
 
     @property
     def simulated_rms(self) -> Annotated[Array | None, VIEW]:
-        """Simulated rms (f,) of the true motion of each coordinate in regulation; null without noise."""
+        """Simulated rms (f,) of the true motion of each of f coordinates in regulation; null without noise."""
         if self.resting is not None:
             return self.resting.rms
         return None if self.still is None else np.sqrt(np.mean(self.still.true_error**2, axis=0))

@@ -170,7 +170,7 @@ def merit(spec: TuningSpec, found: Outcome) -> float:
 
 
 def worth(within: Field, found: Outcome) -> float:
-    """Compute the merit minus the weighted excess over bounds. Peaks count only for gain errors and mode shifts within the spread."""
+    """Compute the merit minus the weighted violations of bounds. Peaks count only for gain errors and mode shifts within the spread."""
     spec = within.spec
     limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in within.variants])
     return merit(spec, found) - _STEEP * _excess(spec, found, limits)

@@ -24,8 +24,8 @@ class Numbers:
 
     `broken` of `count` samples are not finite; `first_broken` is the index of the first such sample. The longest interval of constant value
     starts at sample `still_from`, and has `still` samples with the value `still_at`. `lows` and `highs` are the lowest and highest samples,
-    enough to distinguish clipping from a tail of the distribution. `step` is the smallest nonzero step. `pairs` are the lowest and the
-    highest of all values that two successive samples share.
+    as many as are needed to distinguish clipping from a tail of the distribution. `step` is the smallest nonzero difference of successive
+    samples. `pairs` are the lowest and the highest of the values at which two successive samples are equal.
     """
 
     count: int = 0
@@ -85,7 +85,7 @@ class Numbers:
 
     @property
     def rms(self) -> Annotated[float, VIEW]:
-        """Root mean square about the mean."""
+        """Root mean square of the samples' deviations from their mean."""
         return float(np.sqrt(self.square / max(1, self.count - self.broken)))
 
     @property
@@ -168,10 +168,11 @@ def count_ends(values: Array) -> tuple[int, int]:
 
 
 def explained_share(spectra: Array) -> Array:
-    """Compute the fraction (m,) of each input's power that the other inputs explain, from cross-spectra G (f, m, m).
+    """Compute the fraction of each input's power that the other inputs explain, from cross-spectra (f, m, m) of m inputs.
 
-    This fraction is the power-weighted multiple coherence 1 - (sum of 1/(G^-1)_ii)/(sum of G_ii) (Bendat and Piersol, Random Data, 4th
-    edition, section 7.3). Delays between inputs that are short relative to a segment have no influence.
+    For input i, this fraction is the power-weighted multiple coherence, 1 minus the sum of 1/(G^-1)_ii divided by the sum of G_ii (Bendat
+    and Piersol, Random Data, 4th edition, section 7.3). The sums are over the frequencies of the cross-spectra G. Delays between inputs
+    have no influence if they are much shorter than a segment.
 
     >>> explained_share(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
     [0.64, 0.64]

@@ -81,11 +81,11 @@ class AmplifierSetup(AmplifierForm):
 class ChargeSetup(AmplifierSetup):
     """Charge amplifiers for stacks; their data are those of voltage amplifiers, converted to the voltage of an unloaded stack.
 
-    `coupling` is the coupling k of the stack, at most k33 of its ceramic (0.7 for soft PZT). At constant charge the stack is stiffer by the
-    factor 1/(1 - k^2). Below the `corner` the drive acts as a voltage drive. With a `leakage` resistance R parallel to the stack, the
-    corner is 1/(2 pi R C). `residual_hysteresis` is the fraction of hysteresis and creep that remains above the corner. The default is one
-    fifth (Ge & Jouaneh, IEEE Transactions on Control Systems Technology 4 (1996) 209, cited by Fleming & Leang, Design, Modeling and
-    Control of Nanopositioning Systems, 2014, chapter 12).
+    `coupling` is the electromechanical coupling k of the stack, at most the coupling k33 of its ceramic (0.7 for soft PZT). At constant
+    charge the stack is stiffer by the factor 1/(1 - k^2). Below the `corner` the drive acts as a voltage drive. With a `leakage` resistance
+    R parallel to the stack's capacitance C, the corner is 1/(2 pi R C). `residual_hysteresis` is the fraction of hysteresis and creep that
+    remains above the corner. The default is one fifth (Ge & Jouaneh, IEEE Transactions on Control Systems Technology 4 (1996) 209, cited by
+    Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, chapter 12).
     """
 
     kind: ClassVar[str] = "charge"

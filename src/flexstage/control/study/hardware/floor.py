@@ -33,10 +33,10 @@ _LOWEST, _CORNER, _HIGHEST = 4.0, 8.0, 80.0
 def criterion_spectrum(criterion: Criterion) -> Spectrum:
     """Compute the spectrum of a floor that just meets a generic vibration criterion in every third-octave band.
 
-    The criteria limit the rms velocity v in third-octave bands. The limit is constant from 8 to 80 Hz, and proportional to 1/f (constant
-    acceleration) from 4 to 8 Hz. For VC-C to VC-G the limit is constant from 1 to 80 Hz (Gordon 1999; Amick and others 2005, Table 1). A
-    density v^2/(f ln(2)/3) has exactly the rms value v in each band. Outside these frequencies the criteria do not apply, and the spectrum
-    is zero.
+    The criteria limit the rms velocity v in third-octave bands. The limit is constant from 8 to 80 Hz, and inversely proportional to the
+    frequency (constant acceleration) from 4 to 8 Hz. For VC-C to VC-G the limit is constant from 1 to 80 Hz (Gordon 1999; Amick and others
+    2005, Table 1). A power density of the velocity of v^2/(f ln(2)/3) at the frequency f has exactly the rms value v in each band, if v is
+    constant. Outside these frequencies the criteria do not apply, and the spectrum is zero.
 
     >>> spectrum = criterion_spectrum(Criterion.VC_D)
     >>> band = np.geomspace(10.0 * 2.0 ** (-1.0 / 6.0), 10.0 * 2.0 ** (1.0 / 6.0), 2001)
