@@ -66,9 +66,9 @@ class HingeDimensions:
         return 2.4 * (1.0 + self.poisson) * self.beam[..., 0]
 
     def plane_strain(self, scale: float, power: float, size: Array) -> Array:
-        """Compute the plane-strain factor: from 1 - nu^2 for a width far above `size` times `scale`, to 1 for a width far below.
+        """Compute the plane-strain factor: 1 - nu^2 for a width far above `scale` times `size`, 1 for a width far below.
 
-        `power` is the exponent of the transition from narrow to wide hinges.
+        Here nu is Poisson's ratio, and `power` the exponent of the transition from narrow to wide hinges.
         """
         return 1.0 - self.poisson**2 / (1.0 + (scale * size / self.width) ** power)
 
@@ -87,7 +87,7 @@ def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
 def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
     """Compute the transverse compliance of a notch: root compliance, bending with restrained contraction, and the block.
 
-    Beam theory treats the block as a beam. The excess over the plate-like deformation of a wide block is subtracted.
+    Beam theory treats the block as a beam. A wide block deforms less, like a plate; the difference is subtracted.
     """
     root, flat = hinge.root, hinge.flatness
     circle = (p[0] + p[1] * root + p[2] * root**2 + p[3] * root**3) * flat ** p[9]
@@ -108,7 +108,8 @@ def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
     """Compute the bending compliance of a notch, with a fitted root rotation.
 
-    For a thin notch, the rotation is proportional to the thickness divided by the radius; it rises with Poisson's ratio.
+    For a thin notch, the root rotation divided by the rotation of the notch is proportional to the thickness divided by the radius. It
+    rises with Poisson's ratio.
     """
     neck = np.sqrt(hinge.thickness * hinge.radius)
     turned = _root_rotation(hinge, p) * hinge.flatness ** p[4] * (1.0 + p[5] * (hinge.poisson - 0.3))
@@ -116,7 +117,7 @@ def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def fillet_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the transverse compliance of a fillet: plate action if wide, root rotation with lever arms, block as in `notch_y`."""
+    """Compute the transverse compliance of a fillet: plate action if wide, root rotation with its lever arm, block as in `notch_y`."""
     bent = _plate_share(hinge, shear_factor, p[3], p[4]) * (hinge.beam[..., 1] - hinge.shear_share)
     turned = _root_rotation(hinge, p) * (hinge.half - p[2] * hinge.along) ** 2
     return bent + hinge.shear_share * (1.0 + p[5] * hinge.root) + turned - _block_as_plate(hinge, p[6], p[7])

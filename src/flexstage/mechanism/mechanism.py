@@ -220,7 +220,7 @@ class ModalDamping(Description):
 
 @dataclass(frozen=True, eq=False)
 class StructuralDamping(Description):
-    """Structural damping by the loss factor eta_p of each part's material: K_p (1 + j eta_p); in the frequency domain only."""
+    """Structural damping, only in the frequency domain: a part's stiffness is multiplied by 1 + j eta, eta its material's loss factor."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -78,7 +78,7 @@ class Material(Description):
 
     @property
     def twist_ratio(self) -> Number:
-        """Ratio E / (2 G) in warping torsion, equal to 1 + nu for an isotropic material."""
+        """Young's modulus divided by twice the shear modulus, for warping torsion; 1 + Poisson's ratio for an isotropic material."""
         return 1.0 + self.contraction
 
     @property
@@ -186,7 +186,7 @@ class Material(Description):
         )
 
     def stiffness_tensor(self, rotation: Array) -> Array:
-        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in the axes that the columns of `rotation` (..., 3, 3) give in the stage.
+        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in rotated axes: the columns of `rotation` (..., 3, 3), in the stage.
 
         The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. With the components q_ai of the crystal's three axes a, and
         d_ij = 1 for i = j, else 0 (Nye 1957):

@@ -28,8 +28,7 @@ class DriveForce(Result):
     The ideal guide has the same stiffness as the stage in the ideal DOFs of its flexures, and is rigid in all other DOFs. `force` is the
     generalised force of the actuators divided by the displacement: a row for each coordinate, a column for the elastic stage and one for
     the ideal guide. `shares` and `excess` have a row for each link and a column for each coordinate. The shares are the links' fractions of
-    the elastic displacement, which add up to 1. The excesses are the links' contributions to the total relative excess of the force over
-    the ideal guide's force.
+    the elastic displacement, which add up to 1. The excesses are the links' contributions to `total`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -46,7 +45,7 @@ class DriveForce(Result):
 
     @property
     def total(self) -> Array:
-        """Relative excess (f,) of the force over the ideal guide's force."""
+        """Excess of the force over the ideal guide's force along each of f coordinates, as a fraction of the latter."""
         return np.sum(self.excess.values, axis=-2)
 
     @property

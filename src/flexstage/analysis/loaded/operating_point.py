@@ -73,8 +73,8 @@ def operating_point(
     """Compute the operating point of a stage at large displacements, and linearise about it.
 
     First, the static equilibrium is solved under weight, payloads, preloads, specified forces, `loads` (as in `equilibrium`) and
-    `temperature` (a uniform change [K]). `at` then displaces coordinates from this equilibrium by forces of constant direction:
-    `platform.y` [m], or `platform.rz` [rad], a component of the rotation vector. `at` can also contain strokes, by stack name; the
+    `temperature` (a uniform change [K]). `at` then displaces coordinates from this equilibrium by forces of constant direction, for example
+    `platform.y` [m] or `platform.rz` [rad] (a component of the rotation vector). `at` can also contain strokes, by stack name; the
     operating point is computed with these strokes. In the linear model, the coordinates displaced by `at` are free, and the displacing
     forces are constant. The coordinates named in `fixed` are fixed at their equilibrium value, or at the value in `at`.
 
@@ -122,7 +122,7 @@ def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Definition of an operating point: constant `loads`, displacements and strokes `at`, `fixed` coordinates, fraction of `weight`."""
+    """Definition of an operating point: constant `loads`, displacements and strokes `at`, `fixed` coordinates, `weight` as a fraction."""
 
     model: Nonlinear
     loads: Mapping[str, float]

@@ -29,8 +29,8 @@ class Seating:
     """Contact loads of a ball in its seat, at the worst contact.
 
     `left` (...) is the least normal force divided by the force due to the preload; the ball lifts off at zero. `slip` is the tangential
-    force divided by the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is the
-    ratio of `pressure` to the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
+    force divided by the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is
+    `pressure` divided by the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
     """
 
     left: Array

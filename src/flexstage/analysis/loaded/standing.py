@@ -83,7 +83,7 @@ def require_standing(mechanism: Mechanism) -> None:
 
 @SESSION.keep(2)
 def load_factors(mechanism: Mechanism) -> Stability | None:
-    """Return load factors of the stage over all strokes, measured from zero voltage; `None` without an elastic model.
+    """Return the load factors of the stage, also for the worst strokes from zero voltage; `None` without an elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> bool(load_factors(parallelogram()).worst > 100.0)

@@ -108,7 +108,7 @@ class Points:
 
     @cached_property
     def about(self) -> LinearModel:
-        """Models linearised about the states."""
+        """Stage linearised about each of the states."""
         return linearise(self.state, locked=self.locked)
 
     @cached_property
@@ -123,7 +123,7 @@ class Points:
 
     @cached_property
     def frequencies(self) -> Array:
-        """Natural frequencies (k, n) of the released stage [Hz]; NaN if the released stage is unstable."""
+        """Natural frequencies (k, n) of the released stage in each of the k states [Hz]; NaN if the released stage is unstable."""
         with np.errstate(invalid="ignore"):
             return np.sqrt(eigenvalues(self.about)) / (2.0 * np.pi)
 

@@ -58,9 +58,9 @@ class ActiveDamping:
     """Integral force feedback in the `legs` with `gain` [1/s]; its high-pass filter has a `corner` frequency [Hz] and an `order`.
 
     `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the fraction of the platform's static stiffness that
-    remains. `softest` is the lowest remaining fraction of the dynamic stiffness below half the first mode's frequency; it occurs at
-    `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below` [Hz]. `rate` [Hz] is the sampling rate, absent for
-    analogue feedback. `reached` is the lowest damping ratio of the modes with the largest residues, one per loop coordinate.
+    remains with the feedback. `softest` is the lowest remaining fraction of the dynamic stiffness below half the first mode's frequency; it
+    occurs at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below` [Hz]. `rate` [Hz] is the sampling rate,
+    absent for analogue feedback. `reached` is the lowest damping ratio of the modes with the largest residues, one per loop coordinate.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -33,7 +33,7 @@ _HTTP = re.compile(rb"\s*(?:GET|HEAD|POST|PUT|PATCH|DELETE|CONNECT|OPTIONS|TRACE
 
 @dataclass
 class Pace:
-    """Lag of simulated time behind the clock [s]: clock time `offset` at zero simulated time, largest lag `most`, time `lost`."""
+    """Lag of simulated time behind the clock [s]: clock time `offset` at zero simulated time, largest lag `most`, and time `lost`."""
 
     offset: float
     most: float = 0.0

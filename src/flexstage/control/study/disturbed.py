@@ -52,7 +52,7 @@ class DisturbedLoop:
     rest: float
 
     def simulate(self, poses: Array, number: int = 0, held: Array | float = 0.0) -> Simulated:
-        """Simulate commanded poses (n, f), starting at rest in the pose `held` (f,); the noise depends on its `number`."""
+        """Simulate n commanded poses (n, f), starting at rest in the pose `held` (f,); each `number` has other noise."""
         lead, series = self._noise(len(poses), number)
         if not series and not np.any(held):
             return simulate(self.machine, poses)

@@ -202,7 +202,7 @@ def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
 
 
 def slower(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
-    """Return the best of rejected controllers with their gains multiplied by the largest factor that makes one of them acceptable."""
+    """Return the best rejected controller with reduced gains: all are multiplied by the largest factor that makes one acceptable."""
     distinct = {(each.laws, each.notches): each for each in rejected}.values()
     for factor in _FACTORS:
         slowed = [replace(each, laws=tuple(_scaled(law, factor) for law in each.laws)) for each in distinct]

@@ -38,9 +38,10 @@ _UNWINDOWED = (
 
 @dataclass(frozen=True)
 class RecordRequirements(CheckedFields):
-    """Record requirements: `resolution` in Hz with a number of `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
+    """Record requirements: frequency `resolution` [Hz] with a number of `averages`, and frequency of the `highest` mode [Hz].
 
-    With `unrecorded`, the excitation was not recorded, and the record must have no inputs.
+    `inputs` and `outputs` are the channels of the stage as pairs (name, unit). With `unrecorded`, the excitation was not recorded, and the
+    record must have no inputs.
     """
 
     resolution: float | None = None

@@ -106,7 +106,7 @@ class Numbers:
 
 @dataclass(frozen=True, eq=False)
 class RecordNumbers:
-    """Statistics of all channels, the longest interval `stretch` (start, stop) of finite samples, and unscaled input cross-spectra."""
+    """Statistics of all channels, the longest interval `stretch` (start, stop) of finite samples, and unscaled cross-spectra of inputs."""
 
     channels: tuple[Numbers, ...]
     stretch: tuple[int, int]

@@ -207,11 +207,11 @@ class Record(InNotebook, CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Responses(InNotebook, CheckedFields):
-    """Frequency responses of an analyser: H_ij = output i over input j, for e^{+j omega t}.
+    """Frequency responses of an analyser, each the output divided by the input, for the time dependence e^{+j omega t}.
 
-    `frequencies` (f,) in Hz, ascending; `values` (f, outputs, inputs), complex, in output unit over input unit. `coherence`, if stored, has
-    the shape of `values`; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names of outputs
-    or of inputs and for shapes that do not match.
+    `frequencies` (f,) are in Hz, ascending. `values` (f, outputs, inputs) are complex; the unit of a value is that of the output divided by
+    that of the input. `coherence`, if stored, has the shape of `values`; `window` and `averages` are set if the file specifies them. Raises
+    `DesignError` for duplicate names of outputs or of inputs and for shapes that do not match.
 
     >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))
     >>> one.at("S1", "u1").tolist(), one.units

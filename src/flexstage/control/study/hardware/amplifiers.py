@@ -46,9 +46,9 @@ class AmplifierSetup(AmplifierForm):
     """Amplifiers with a digital-to-analogue converter and a first-order lag; ideal by default.
 
     The corner of the lag is `bandwidth`, or 1/(2 pi R C) with the output `resistance` R and the stack's capacitance C. `current` is the
-    maximum output current and `slew` the maximum voltage rate; both limit the stroke rate. `noise` is white at the output. `bits` is the
-    resolution of the converter over the full voltage range. The voltage range and the stroke of each stack determine the free stroke per
-    volt. Voice coil amplifiers control the current: only `bandwidth`, `current`, `current_noise` and `bits` apply.
+    maximum output current and `slew` the maximum voltage rate; both limit the stroke rate. `noise` is the density of white noise at the
+    output. `bits` is the resolution of the converter for the full voltage range. The voltage range and the stroke of each stack determine
+    the free stroke per volt. Voice coil amplifiers control the current: only `bandwidth`, `current`, `current_noise` and `bits` apply.
     """
 
     kind: ClassVar[str] = "voltage"
