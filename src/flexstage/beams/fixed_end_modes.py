@@ -38,7 +38,7 @@ _FIRST_LOBE = -0.9
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """Plate data of a leaf: `width` and Poisson's ratio nu. The plate rigidity times the width is the beam rigidity E I / (1 - nu^2)."""
+    """Plate data of a leaf: `width` and Poisson's ratio nu. Plate rigidity times width is the beam's rigidity divided by 1 - nu^2."""
 
     width: Number
     poisson: Number
@@ -78,7 +78,8 @@ class FixedEndModes:
     """Modes of unit modal mass: squared angular frequencies `squares` (..., n) [1/s^2], and the motion of sections.
 
     `moved` (..., n, s) are the displacements of s sections in n modes, and `turned` (..., n, s) their rotations. `axis` is 1 for
-    deflections along y, 2 along z, 3 for twist about x. The rotation is the slope of the section for deflections, and not used for twist.
+    deflections along y, 2 along z, 3 for twist about x. For deflections, the rotation of a section has the sign of the slope; for twist
+    there is none.
     """
 
     axis: int

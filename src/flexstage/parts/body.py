@@ -268,7 +268,7 @@ class Sphere(Solid):
 class Inertia(Description):
     """Moments and products of inertia about the centre of mass, along the axes of the body's drawing frame [kg m^2].
 
-    The products are the integrals of x y, x z, y z (the tensor's off-diagonal entries are their negatives).
+    The products are the integrals of x y, x z, y z over the mass (the tensor's off-diagonal entries are their negatives).
     """
 
     xx: Annotated[Number, INERTIA, NOT_NEGATIVE]

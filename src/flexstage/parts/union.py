@@ -100,7 +100,7 @@ class _Prism:
 
 
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
-    """Yield densities and moments that correct the sum over a body's solids for their common volumes (most are negative).
+    """Yield densities and moments that, added to those of a body's solids, correct for common volumes (most moments are negative).
 
     A subtracted solid removes its intersection with other solids of the same material: a solid minus a hole is the union of both, minus the
     hole. Raises `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not prisms along one axis.

@@ -18,7 +18,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 class Deflection(Result):
-    """Twist (..., 6, causes) of the platform's reference point or a named point, due to own weight, each payload and each specified force.
+    """Twist (..., 6, causes) of the platform's reference point or a named point; causes are own weight, each payload, each force.
 
     In closed loop, the gauges measure the deflection and the strokes compensate for it. In open loop, the deflection is the load term of
     equation 11 (Shin & Moon).

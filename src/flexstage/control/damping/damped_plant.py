@@ -30,7 +30,8 @@ class DampedMode:
     """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, `damped_frequency` and `damped_ratio` with them.
 
     `zero` z [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio with one leg or decoupled legs,
-    (w - z)/(2 z), with the `frequency` w. `alone` is the damping ratio of the isolated mode with the present gain.
+    (w - z)/(2 z), with the `frequency` w. `alone` is the damping ratio of the mode with the present gain, without the effect of other
+    modes.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -60,7 +61,8 @@ class ActiveDamping:
     `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the fraction of the platform's static stiffness that
     remains with the feedback. `softest` is the lowest remaining fraction of the dynamic stiffness below half the first mode's frequency; it
     occurs at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below` [Hz]. `rate` [Hz] is the sampling rate,
-    absent for analogue feedback. `reached` is the lowest damping ratio of the modes with the largest residues, one per loop coordinate.
+    absent for analogue feedback. `reached` is the lowest damping ratio of the modes with the largest residues; as many modes count as the
+    loop has coordinates.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -181,7 +183,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
 
 
 def dominant_modes(given: Plant) -> Array:
-    """Return the indices of the modes with the largest residues in a plant's loop, one per coordinate."""
+    """Return the indices of the modes with the largest residues in a plant's loop, as many as it has coordinates."""
     return np.argsort(-resonances(given))[: len(given.coordinates.names)]
 
 

@@ -182,8 +182,9 @@ def compare_controllers(
     """Tune PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS` for one set-up, and compare their step responses.
 
     PI and PID are optimised, unless the set-up specifies plain tuning; LQG is optimised for a specified goal. All other kinds are tuned to
-    the highest bandwidth within the same peak of S. `workers` is the number of parallel processes (0: the calling process); the results do
-    not depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up specifies gains that this kind does not have.
+    the highest bandwidth within the same limit on the peak of the sensitivity. `workers` is the number of parallel processes (0: the
+    calling process); the results do not depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up specifies
+    gains that this kind does not have.
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)

@@ -106,7 +106,7 @@ class CoilHeat:
 
 @dataclass(frozen=True)
 class LegUse:
-    """Amplifier load: the largest stroke `added` by force feedback, and the `largest` total stroke including the controller's [m].
+    """Amplifier load [m]: the largest stroke `added` by force feedback, and the `largest` total with the stroke of the controller.
 
     `fastest` [m/s] is the largest rate of the total stroke between samples. `reach` [m] is the amplifier's stroke limit in the direction of
     the largest stroke, `slew` [m/s] its rate limit (infinite: no limit).

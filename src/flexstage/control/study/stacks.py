@@ -102,9 +102,9 @@ class Sweep:
 def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
     """Construct the stacks of a stage with the hysteresis of a set-up, scaled to their strokes and voltages.
 
-    A file's model is scaled so that the hysteresis loop over each stack's voltage range has the full stroke. With only a width, the plant
-    is by default a Bouc-Wen stack, and the model is identified from a simulated record of such a stack. Raises `DesignError` for invalid
-    files, and for stacks without a voltage range.
+    A file's model is scaled: for each stack, its hysteresis loop has the stack's voltage range and full stroke. With only a width, the
+    plant is by default a Bouc-Wen stack, and the model is identified from a simulated record of such a stack. Raises `DesignError` for
+    invalid files, and for stacks without a voltage range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = stacks_of(double_triangle(), HystereticStacks(width=0.15))

@@ -294,7 +294,7 @@ def _attempts_lqg(seen: View, spec: TuningSpec, frequency: float) -> Iterator[At
 
 
 def driven_gains(seen: View, frequency: float) -> Array:
-    """Compute the gain (k,) of each loop's pose at a frequency [Hz], with all strokes acting together.
+    """Compute the gain (k,) of each loop's pose at a frequency [Hz]: the norm of its responses to all strokes.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -65,9 +65,9 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
     possible if margins hold for all mode shifts. The search first continues `known` tunings of a plant with fewer modes. If they give no
     result, the search starts from a grid around the modes, unless the controller of highest bandwidth (`tune`) has its crossover beyond the
     modes. If the controller of highest bandwidth is still better, the search also starts from this controller. The result is at least as
-    good for the objective (`merit`) as the controller of highest bandwidth, if that controller meets all requirements. Eigenvalues
-    determine stability; the coupled peak of S of the sampled loop, for mode shifts within the spread, determines robustness. Raises
-    `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
+    good for the objective (`merit`) as the controller of highest bandwidth, if that controller meets all requirements. Stability is
+    determined by eigenvalues. Robustness is determined by the peak sensitivity of all sampled loops together, for mode shifts within the
+    spread. Raises `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -44,7 +44,7 @@ def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judge
 
 
 def keeps_peak(seen: View, control: Callable[[], System], gains: Array, peak: float) -> bool:
-    """Check that `judge_loop` finds a stable loop with a peak of S below `peak`; the fastest checks come first.
+    """Check that `judge_loop` finds a stable loop with a sensitivity of at most `peak`; the fastest checks come first.
 
     `control` constructs the controller; it is not called if a coarse check shows too high a peak.
 

@@ -119,7 +119,7 @@ _CLOSE = np.linspace(-0.06, 0.06, 25)
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """Search parameters: weight `quiet` of noise, at most `tries` steps; the search ends at half a sum of squares of `enough`."""
+    """Search parameters: weight `quiet` of noise, at most `tries` steps; the search ends if half the sum of squares falls to `enough`."""
 
     quiet: float
     tries: int
@@ -171,7 +171,7 @@ class Variant:
     turn: float = np.inf
 
     def factor(self, frequencies: Array) -> Array:
-        """Compute the factor on the plant's response at frequencies (f,) [Hz]."""
+        """Compute the complex factor by which gain and delay multiply the plant's response at frequencies (f,) [Hz]."""
         return self.gain * np.exp(-1j * np.minimum(2.0 * np.pi * frequencies * self.later, self.turn))
 
 

@@ -21,7 +21,7 @@ _BELOW = 0.45
 
 @dataclass(frozen=True)
 class Shape:
-    """PI, or PID filtered at `corner` [Hz], with `count` notches, sampled every `step` [s].
+    """Shape of a loop's controller: PI, or PID with its derivative filtered at `corner` [Hz]; `count` notches, sampled every `step` [s].
 
     A point contains logarithms: of the proportional gain k_p, of the ratio k_i/k_p [1/s] of the integral gain, for a PID of the ratio
     k_d/k_p [s] of the derivative gain, and of each notch's frequency [Hz], depth and damping. `slowest` [1/s] is the lower limit of

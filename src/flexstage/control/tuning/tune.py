@@ -33,11 +33,11 @@ def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     """Tune a controller to a specification without objective, evaluated on all sampled loops together.
 
     Every loop has a gain of 1 at the required bandwidth. By default, the tuner tries bandwidths from fast to slow and refines the highest
-    one by bisection. The controller of the family with the lowest peak of S is selected, first without additional notches, then with them.
-    All loops together must have stable eigenvalues and a peak of S below the limit, also for all mode shifts within the spread. Finally, PI
-    and PID get the strongest integrators within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is
-    tuned by its weights, in platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the highest bandwidth
-    found, and a remedy.
+    one by bisection. The controller of the family with the lowest peak of the sensitivity is selected, first without additional notches,
+    then with them. All loops together must be stable and have a peak below the limit, also for all mode shifts within the spread. Finally,
+    PI and PID get the strongest integrators that keep the peak within the limit (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998)
+    585). LQG is tuned by its weights, in platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the
+    highest bandwidth found, and a remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -41,7 +41,7 @@ def round_nominal(value: float, uncertainty: float) -> float:
 
 
 def printed_uncertainty(text: str) -> float:
-    """Compute the relative uncertainty of a printed number: half a unit of its last digit.
+    """Compute the relative uncertainty of a printed number: half a unit of its last digit, divided by the number.
 
     >>> printed_uncertainty("5.0e-04"), printed_uncertainty("0.25")
     (0.01, 0.02)
@@ -54,7 +54,7 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """Sampling clock: rate in Hz, first time in s, intervals without gaps as sample numbers (start, stop), and their start times in s."""
+    """Sampling clock: rate [Hz], first time [s], and intervals without gaps: sample numbers (start, stop) and start times [s]."""
 
     rate: float
     start: float
