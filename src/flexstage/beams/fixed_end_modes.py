@@ -89,7 +89,7 @@ class FixedEndModes:
 
 
 def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> FixedEndModes:
-    """Compute the first `count` fixed-end bending modes along y (`axis` 1) or z (2) at `stations` (s,) of x divided by the half length.
+    """Compute the first `count` fixed-end bending modes along y (`axis` 1) or z (2) at `stations` (s,), x divided by the half length.
 
     The example compares the frequencies with those of Euler's clamped-clamped beam: 22.3733, 61.6728 and 120.903 times (E I / (rho A
     L^4))^(1/2).
@@ -122,7 +122,7 @@ def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> 
 
 
 def fixed_end_twist(part: Torsion, count: int, stations: Array) -> FixedEndModes:
-    """Compute the first `count` fixed-end twist modes at `stations` (s,) of x divided by the half length, from -1 to 1.
+    """Compute the first `count` fixed-end twist modes at `stations` (s,): positions x divided by the half length, from -1 to 1.
 
     >>> rod = Torsion(length=1.0, rigidity=1.0, inertia=1.0)
     >>> (fixed_end_twist(rod, 3, np.zeros(1)).squares ** 0.5 / np.pi).round(9).tolist()

@@ -20,7 +20,7 @@ Freedoms = tuple[Freedom, ...]
 
 
 def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> Mechanism:
-    """Restrict parts to (elastic, free) degrees of freedom, by part name or link address (`vertical/lower`); all others are locked.
+    """Restrict parts, by name or link address (`vertical/lower`), to their elastic and free degrees of freedom; all others are locked.
 
     Restricted parts are massless. Raises `DesignError` for a name that is not a part or a link.
 

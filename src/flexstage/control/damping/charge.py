@@ -52,9 +52,9 @@ def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mappin
     """Return the model with the stacks of `legs` at constant charge, which increases their stiffness.
 
     A stack with elongation u, tension F, voltage V and charge Q has the stiffness k at constant voltage, the free stroke d per volt, and
-    the capacitance C: u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active Structures, 2018, ch. 4). With the coupling
-    kappa, kappa^2 = d^2 k / C, it follows that u = (1 - kappa^2) F/k + (d/C) Q. The stiffness at constant charge is therefore k / (1 -
-    kappa^2). The free stroke (d/C) Q equals d V for the voltage V that would cause the charge Q in the unloaded stack.
+    the capacitance C without load: u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active Structures, 2018, ch. 4). With
+    the coupling kappa, kappa^2 = d^2 k / C, it follows that u = (1 - kappa^2) F/k + (d/C) Q. The stiffness at constant charge is therefore
+    k / (1 - kappa^2). The free stroke (d/C) Q equals d V for the voltage V that would cause the charge Q in the unloaded stack.
     """
     stiffness, output, through = dict(model.stiffness), np.array(model.output, dtype=float), np.array(model.feedthrough, dtype=float)
     for each in legs:

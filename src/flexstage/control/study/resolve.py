@@ -50,12 +50,11 @@ class ResolvedSetup:
     """Set-up completed for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
 
     `plant` has the retained modes, or the specified number of modes. `whole` has all modes of the model; `stage` has all modes too, but no
-    inner loops. `highest` [Hz] is the frequency of the highest platform mode that counts: as many of the lowest modes count as the loop has
-    coordinates. If `displaced` is true, the model is linearised at an operating point, including its deflection. `loaded` is the effect of
-    permanent load on the nominal stage; if it is significant, the model is the loaded stage. With a measured plant, `predicted` is the
-    model's plant. `damping` describes the force feedback, `charge` the charge amplifiers. `plant` and `whole` include both, if specified.
-    In `model`, stacks have the stiffness at constant voltage, which is correct for statics. `solid` is the finite-element stage, if that is
-    the model.
+    inner loops. `highest` [Hz] is the highest frequency of the lowest platform modes, as many as the loop has coordinates. If `displaced`
+    is true, the model is linearised at an operating point, including its deflection. `loaded` is the effect of permanent load on the
+    nominal stage; if it is significant, the model is the loaded stage. With a measured plant, `predicted` is the model's plant. `damping`
+    describes the force feedback, `charge` the charge amplifiers. `plant` and `whole` include both, if specified. In `model`, stacks have
+    the stiffness at constant voltage, which is correct for statics. `solid` is the finite-element stage, if that is the model.
     """
 
     mechanism: Mechanism

@@ -160,8 +160,8 @@ class Work:
 class Variant:
     """Variant of the plant: modes shifted by `offset`, commands multiplied by `gain` and delayed by `later` [s].
 
-    `limit` is the highest permitted sensitivity. The delay rotates the phase by at most `turn` [rad]. Variants with a smaller `turn`
-    represent smaller delays, at which a mode far above the crossover may be unstable.
+    `limit` is the highest permitted sensitivity. The delay rotates the phase by at most `turn` [rad]. A smaller `turn` represents a smaller
+    delay for modes far above the crossover: such a mode may be unstable at some delay below `later`.
     """
 
     offset: float

@@ -102,7 +102,7 @@ class ChargeSetup(AmplifierSetup):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Check the data of a voltage amplifier, that the coupling is specified, and that the corner is specified exactly once."""
+        """Check the data of the voltage amplifier; also check that the coupling is specified, and the corner exactly once."""
         yield from super().faults
         if self.coupling is None:
             advice = "Use e.g. coupling = 0.7. An estimate from data-sheet values, d^2 k / C, is too large"
