@@ -106,11 +106,7 @@ def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the bending compliance of a notch, with a fitted root rotation.
-
-    For a thin notch, the root rotation divided by the rotation of a circular notch is proportional to the thickness divided by the radius.
-    It rises with Poisson's ratio.
-    """
+    """Compute the bending compliance of a notch, with a fitted root rotation, which rises with Poisson's ratio."""
     neck = np.sqrt(hinge.thickness * hinge.radius)
     turned = _root_rotation(hinge, p) * hinge.flatness ** p[4] * (1.0 + p[5] * (hinge.poisson - 0.3))
     return hinge.plane_strain(p[2], p[3], neck) * (hinge.beam[..., 5] + turned)

@@ -73,10 +73,7 @@ class ForceFeedback:
 
     @property
     def kept_below(self) -> float:
-        """Frequency [Hz] below which a leg keeps over half its axial stiffness.
-
-        This frequency is a^2 / (2 pi g) for order 2. For order 1 it is 0 if g > a, and infinite otherwise.
-        """
+        """Frequency [Hz] below which a leg keeps over half its stiffness: a^2 / (2 pi g) for order 2; 0 (g > a) or infinite for order 1."""
         turning = 2.0 * np.pi * self.corner
         if self.order == 1:
             return 0.0 if self.gain > turning else np.inf
