@@ -83,8 +83,9 @@ def law(part: Part, material: Material | None) -> Law:
 
     A `Joint` has no stiffness and locks all DOFs that are not free. Ordinary parts lock nothing.
 
-    For a `Restricted` part, the stiffness matrix K = C^-1 is reduced. Rows and columns of locked DOFs become zero. Free DOFs f are
-    condensed: K_ee - K_ef K_ff^-1 K_fe, with the elastic DOFs e. Free DOFs that have no stiffness need no condensation.
+    For a `Restricted` part, the stiffness matrix K = C^-1, the inverse of the compliance, is reduced. Rows and columns of locked DOFs
+    become zero. Free DOFs f are condensed: the stiffness of the elastic DOFs e is K_ee - K_ef K_ff^-1 K_fe, with the blocks of K. Free DOFs
+    that have no stiffness need no condensation.
 
     >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
     True

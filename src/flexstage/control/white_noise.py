@@ -37,8 +37,9 @@ class Source:
 def mean_squares(system: System) -> Array:
     """Compute the mean square (p, m) of each output for each unit white input.
 
-    A sampled system has inputs of variance 1: e^2 = b^T X b + d^2 with X = A^T X A + c^T c. A continuous system has inputs of two-sided
-    density 1: e^2 = b^T X b with A^T X + X A + c^T c = 0, infinite where d is not zero. The system must be stable.
+    The mean square e^2 of one output for one input follows from their system matrices A, b, c and d. The inputs of a sampled system have
+    variance 1: e^2 = b^T X b + d^2, where X solves X = A^T X A + c^T c. The inputs of a continuous system have two-sided density 1: e^2 =
+    b^T X b, where X solves A^T X + X A + c^T c = 0; e^2 is infinite if d is not zero. The system must be stable.
 
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
     >>> lag = System(-np.eye(1), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
@@ -60,10 +61,10 @@ def mean_squares(system: System) -> Array:
 
 
 def held_noise(A: Array, B: Array, step: float) -> Array:
-    """Compute a factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds of white noise (density 1) over a step.
+    """Compute a factor L (n, k) of the covariance Q = L L^T of the states (n,) that white noise (density 1) causes in a step of length T.
 
-    A Taylor series gives the covariance Q over a small fraction of the step. The fraction is then doubled repeatedly, Q(2t) = Q(t) + e^{At}
-    Q(t) e^{A^T t}, without growing exponentials.
+    For a system with the matrices A and B, Q(T) = int_0^T e^{As} B B^T e^{A^T s} ds. A Taylor series gives Q for a small fraction of the
+    step. The fraction is then doubled repeatedly, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}, without growing exponentials.
 
     >>> factor = held_noise(-np.eye(1), np.eye(1), 0.5)
     >>> round(float(factor[0, 0] ** 2), 12), round(float(0.5 * (1.0 - np.exp(-1.0))), 12)

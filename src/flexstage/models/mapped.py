@@ -40,7 +40,8 @@ _COLLINEAR = 1e-6
 class LeverStiffness:
     """Springs of a lever unit in SI units (figure 7 and equations 3 to 11 of Shin & Moon).
 
-    The fields are `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, and `long_arm` r_2.
+    The stiffnesses are `drive` K_1 (stack and its hinges), `pivot` K_theta2 and `pole` K_3; the arms are `short_arm` r_1 and `long_arm`
+    r_2.
     """
 
     TABLE: ClassVar[Layout] = Layout("Springs of the lever units", "drive pivot pole short_arm long_arm gain tip_compliance", head="unit")
@@ -68,7 +69,7 @@ class LeverStiffness:
 
     @property
     def stiffness(self) -> Number:
-        """Stiffness K_v in actuator coordinates [N/m]: (r_2 / r_1)^2 over the tip compliance."""
+        """Stiffness K_v in actuator coordinates [N/m]: (r_2 / r_1)^2 divided by the tip compliance."""
         return (self.long_arm / self.short_arm) ** 2 / self.tip_compliance
 
 
@@ -172,10 +173,11 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
 
 
 def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
-    """Compute the compliance [m/N] of all links that carry an actuator's load, in actuator coordinates, by virtual work (sum of f^T C f).
+    """Compute the compliance [m/N] of all links that carry an actuator's load, in actuator coordinates, by virtual work.
 
-    f is the wrench in the locked DOFs of a link in equilibrium, with strokes fixed; C is the link's compliance. The platform wrench w loads
-    only this actuator (V^T w = R_a^T e) and no guide. Free DOFs carry no load; ideal joints are rigid.
+    The compliance is the sum of f^T C f over the links: f is the wrench in the locked DOFs of a link in equilibrium, with strokes fixed; C
+    is the link's compliance. The platform wrench w loads only this actuator and no guide: V^T w = R_a^T e, where V contains the platform's
+    ideal motions, R_a the strokes per ideal motion, and e is 1 for this actuator. Free DOFs carry no load; ideal joints are rigid.
 
     Returns `None` if statics does not determine the wrenches (redundant constraints or a guide), if a link has no known compliance, or if
     all links are rigid.

@@ -92,9 +92,9 @@ class Combination(Instrument):
 def combine_gauges(members: Sequence[tuple[Number, Instrument]]) -> Combination:
     """Combine weighted gauges with independent errors into a single gauge.
 
-    With weights w_i, the range is sum |w_i| r_i, and the resolution is sum |w_i| q_i (worst signs). The noise density is (sum w_i^2
-    n_i^2)^(1/2), or `None` if any n_i is unknown. The bandwidth is the common bandwidth of the gauges, or `None` if bandwidths differ or
-    are unknown.
+    For gauges with the weights w_i, ranges r_i, resolutions q_i and noise densities n_i, the range is sum |w_i| r_i, the resolution is sum
+    |w_i| q_i (worst signs), and the noise density is (sum w_i^2 n_i^2)^(1/2), or `None` if any n_i is unknown. The bandwidth is the common
+    bandwidth of the gauges, or `None` if bandwidths differ or are unknown.
 
     >>> pair = combine_gauges([(0.5, Gauge(range=1e-4, noise_density=3e-11)), (-0.5, Gauge(range=1e-4, noise_density=4e-11))])
     >>> round(1e6 * float(pair.range), 6), round(1e12 * float(pair.noise_density), 6)

@@ -35,9 +35,9 @@ class ShearPiezo(ChargedActuator):
     """Shear piezo actuator: a block of plates along x. The stroke u moves its second face along y relative to the first face.
 
     The block has `length` L along x, `width` along y and `depth` along z. `stiffness` k is the stiffness along y with parallel faces,
-    `axial_stiffness` k_a the stiffness along x. `axial_stiffness` and `stiffness` determine the modulus E = k_a L / A and the shear
-    compliance 1/k - L^3 / (12 E I_z). The other stiffness terms are those of a uniform block. The blocked force is stroke x stiffness. Half
-    of `mass` is at each face.
+    `axial_stiffness` k_a the stiffness along x. `axial_stiffness` and `stiffness` determine Young's modulus E = k_a L / A and the shear
+    compliance 1/k - L^3 / (12 E I_z), with the section's area A and its second moment of area I_z about z. The other stiffness terms are
+    those of a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"
@@ -76,7 +76,7 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def bending(self) -> tuple[Number, Number]:
-        """Bending rigidities E I about y and z [N m^2], with E = k_a L / A."""
+        """Bending rigidities E I about y and z [N m^2], with Young's modulus E = k_a L / A."""
         rigidity = self.axial_stiffness * self.length / 12.0
         return rigidity * self.depth**2, rigidity * self.width**2
 
@@ -89,8 +89,8 @@ class ShearPiezo(ChargedActuator):
     def compliance(self) -> Array:
         """Compliance (..., 6, 6) about the centre: 1/k_a along x, 1/k along y and similarly along z, and for rotations L/(G J) and L/(E I).
 
-        G follows from the shear compliance L / (k_s G A) with k_s = 5/6 (parabolic shear stress). Torsion is Saint-Venant's. Both faces
-        remain plane.
+        The shear modulus G follows from the shear compliance L / (k_s G A) with k_s = 5/6 (parabolic shear stress). Torsion is
+        Saint-Venant's. Both faces remain plane.
         """
         about_y, about_z = self.bending
         shear = self.shear_compliance

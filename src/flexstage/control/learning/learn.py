@@ -41,10 +41,10 @@ class RobustBand:
 class LearningResult:
     """Result of iterative learning in passes along the same path, for the loop's `coordinates` in their `units`.
 
-    `rms` (passes, f) is the measured rms error in the band up to `band` [Hz]: first without learning, then after each learned pass. The
-    last row of `rms` is the rms of four runs with the learned input; `noise` (f,) is the non-repeating component of these runs. `beyond`
-    (f,) is the rms error outside the band, which is not learned. `contraction` is the largest contraction factor per pass for relative mode
-    shifts up to `spread`; `gain` is the learning gain.
+    `rms` (passes, f) is the rms of the measured error over the window, limited to frequencies up to `band` [Hz]: first without learning,
+    then after each learned pass. The last row of `rms` is the rms over four runs with the learned input; `noise` (f,) is the non-repeating
+    component of these runs. `beyond` (f,) is the rms error at frequencies above the band, which is not learned. `contraction` is the
+    largest contraction factor per pass for relative mode shifts up to `spread`; `gain` is the learning gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -135,7 +135,7 @@ def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) ->
 
 @dataclass(frozen=True, eq=False)
 class LearningSettings:
-    """Learning parameters: `passes`, `gain`, relative mode `spread`. Errors are evaluated within the samples of `window`."""
+    """Learning parameters: number of `passes`, `gain`, largest mode shift `spread`. Errors are evaluated within the samples of `window`."""
 
     passes: int
     gain: float

@@ -27,14 +27,15 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 
 @dataclass(frozen=True, eq=False)
 class Repeater:
-    """Repetitive controller d = z^-P (W d + L e) for the error e. `keep` (2m+1,) are the taps of W, `teach` (2m+1, f, f) those of L.
+    """Repetitive controller: the correction d follows from itself and the error e, one period P before, as d = z^-P (W d + L e).
 
-    Both filters are noncausal by m samples. The taps of both filters include the fractional delay if the `period` P [samples] is not a
-    whole number. W is the low-pass filter of the `band`. `contraction` is the largest ||W - G L|| over all frequencies, with rotations
-    scaled to lengths; G denotes the loop's responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors
+    W is the low-pass filter of the `band`, with the taps `keep` (2m+1,). L is the inverse model of the loop times gain, filtered by W, with
+    the taps `teach` (2m+1, f, f). Both filters are noncausal by m samples. The taps of both filters include the fractional delay if the
+    `period` P [samples] is not a whole number. `contraction` is the largest singular value of W - G L over all frequencies, with rotations
+    scaled to lengths; G are the loop's responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors
     decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, Journal of Dynamic Systems, Measurement, and Control 111
-    (1989) 353). `amplifies` is the largest amplification between the harmonics: the maximum of ||(I + W z) (I + (W - G L) z)^-1|| over |z|
-    = 1.
+    (1989) 353). `amplifies` is the largest amplification between the harmonics without mode shift: the largest singular value of (I + W z)
+    (I + (W - G L) z)^-1 over all frequencies and all z with |z| = 1.
     """
 
     period: float
@@ -50,7 +51,7 @@ class Repeater:
         return len(self.keep) // 2
 
     def at(self, frequencies: Array, step: float) -> tuple[Array, Array]:
-        """Compute the responses of W (n,) and L (n, f, f) at frequencies (n,) [Hz], for a period rounded to whole samples."""
+        """Compute the responses of the filters W (n,) and L (n, f, f) at frequencies (n,) [Hz], for a period rounded to whole samples."""
         late = np.arange(-self.reach, self.reach + 1) + (np.floor(self.period + 0.5) - self.period)
         turned = np.exp(-2j * np.pi * np.outer(frequencies, late) * step)
         return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
@@ -120,9 +121,10 @@ def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: i
 class RepetitiveResult:
     """Result of repetitive control along a path, for the loop's `coordinates` in their `units`.
 
-    `rms` (periods, f) is the measured rms error of each `period` in the band up to `band` [Hz]; the first period has no correction.
-    `beyond` (f,) is the rms error of the last period outside the band. `contraction` is the largest contraction factor per period for
-    relative mode shifts up to `spread`. `amplifies` is the largest amplification of non-repeating errors, between the harmonics.
+    `rms` (periods, f) is the rms of the measured error over each `period`, limited to frequencies up to `band` [Hz]; the first period has
+    no correction. `beyond` (f,) is the rms error of the last period at frequencies above the band. `contraction` is the largest contraction
+    factor per period for relative mode shifts up to `spread`. `amplifies` is the largest amplification of non-repeating errors, between the
+    harmonics.
     """
 
     TABLE: ClassVar[Layout] = Layout(

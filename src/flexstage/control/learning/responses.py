@@ -21,9 +21,9 @@ _TAPER = 0.75
 def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
     """Compute responses (f, k, k) from the reference to the measured pose, with all mode frequencies raised by a relative `offset`.
 
-    The measured pose is y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r, with the sampled plant P and the controller's responses K_e, K_y and
-    K_r from error, pose and reference. The mode frequencies are raised by scaling the time of the plant; the plant's lags therefore become
-    shorter. Hold and delay of a sampled plant are unchanged.
+    For the reference r, the measured pose is y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r. P is the response of the sampled plant; K_e, K_y
+    and K_r are the controller's responses to error, pose and reference. The mode frequencies are raised by scaling the time of the plant;
+    the plant's lags therefore become shorter. Hold and delay of a sampled plant are unchanged.
     """
     P = pose_plant(plant, offset).sweep(frequencies)
     back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
@@ -49,7 +49,7 @@ class Band:
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
     def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
-        """Compute Q R + (1 - Q) I `beyond` (f, k, k) with the filter's gains Q: responses R within the band, a constant outside."""
+        """Blend responses R within the band with a constant outside: Q R + (1 - Q) `beyond` I (f, k, k), with the filter's gains Q."""
         share = self.gains(frequencies)
         inside = share > 0.0
         responses, share = respond(frequencies[inside]), share[inside, None, None]

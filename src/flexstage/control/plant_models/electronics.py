@@ -92,10 +92,11 @@ class ChargeDrive:
 class Amplifier:
     """Amplifier, converter and stack of one actuator; values are free strokes from the bias, or inputs [A or N] of a force actuator.
 
-    `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate: the lesser of current x gain / capacitance and the
-    amplifier's slew x gain, where gain is the free stroke per volt. `bandwidth` [Hz] is the corner of the lag after the hold.
-    `noise_density` [m/Hz^(1/2)] is the noise of the free stroke before the lag (None: not specified). `step` [m] is the converter's
-    resolution (0: no rounding). Infinite values impose no limit. `charge` is the charge drive, if any, with its corner.
+    `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate, limited by the amplifier's current and by its voltage rate:
+    the lesser of current x gain / capacitance and voltage rate x gain, where gain is the free stroke per volt. `bandwidth` [Hz] is the
+    corner of the lag after the hold. `noise_density` [m/Hz^(1/2)] is the noise of the free stroke before the lag (None: not specified).
+    `step` [m] is the converter's resolution (0: no rounding). Infinite values impose no limit. `charge` is the charge drive, if any, with
+    its corner.
     """
 
     low: float = -np.inf
@@ -129,8 +130,8 @@ class Hardware:
     """Sampling chain between controller and stage, in both directions.
 
     `rate` [Hz] is the sampling rate (None: a continuous loop, for analysis only). `delay` [s] is the time from a sample to the resulting
-    output, not necessarily whole samples. `amplifiers` and `sensors` are mappings by the names of actuators and gauges (omitted: ideal).
-    Raises `DesignError` for invalid numbers.
+    output, not necessarily whole samples. `amplifiers` and `sensors` map names of actuators and gauges to their data; omitted ones are
+    ideal. Raises `DesignError` for invalid numbers.
 
     >>> Hardware(rate=10e3).step
     0.0001

@@ -42,11 +42,11 @@ class Pairs:
 def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
     """Replace the model's response from strokes to gauges by the identified modes, static term and delay.
 
-    The new response is (sum of the identified modes + D) times the gauges' specified lags and the `delay`. D is the residual of the
-    identified response: a real matrix, constant up to the highest mode. The identified response includes amplifiers and filters, so the
-    hardware of the result omits them. The `delay` adds to the loop's delay. Platform motion in a loop coordinate is computed from the gauge
-    readings. Ground motion and wrenches act as in the model, whose modes get frequency and damping of the paired identified modes. D also
-    contains the effect of the modes above the test's band.
+    The new response is the sum of the identified modes and a matrix D, multiplied by the responses of the gauges' specified lags and of the
+    `delay`. D is the remainder of the identified response: a real constant, fitted up to the highest mode (for force actuators, over the
+    whole band). D also contains the effect of the modes above the test's band. The identified response includes amplifiers and filters, so
+    the hardware of the result omits them. The `delay` adds to the loop's delay. Platform motion in a loop coordinate is computed from the
+    gauge readings. Ground motion and wrenches act as in the model, whose modes get frequency and damping of the paired identified modes.
 
     Raises `DesignError` if inputs and outputs are not the stage's actuators and gauges, and if the modes do not match the stage.
     """

@@ -16,8 +16,8 @@ _REPEATED = 1e-3
 def reduce_modes(given: Plant, wanted: Array) -> Plant:
     """Keep the modes marked in `wanted` (k,), and the strongest modes, as many as loop coordinates; residualise the other modes.
 
-    Repeated modes are retained together. Omitted states follow statically, x = -A^-1 B u, so that every static gain is preserved
-    (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).
+    Repeated modes are retained together. Omitted states x follow the inputs u statically, x = -A^-1 B u with the system matrices A and B,
+    so that every static gain is preserved (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).
 
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
@@ -45,8 +45,8 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 def resonances(given: Plant) -> Array:
     """Compute the resonance peak (k,) of every mode between strokes and pose, relative to a static stroke-to-pose gain of 1.
 
-    With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2), with the modal output c and the
-    modal input b. The peak of a mode at 0 Hz is infinite.
+    With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2), with the modal output c, the
+    modal input b, the damping ratio zeta and the angular frequency omega. The peak of a mode at 0 Hz is infinite.
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # the guide's mode: about 1/(2 zeta) = 50

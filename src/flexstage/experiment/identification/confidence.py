@@ -90,8 +90,8 @@ def _shared_noise(power: Array, lines: float) -> Array:
 def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:
     """Compute standard deviations of a fit by the Cramer-Rao bound: the covariance is I^-1, the inverse of the Fisher information.
 
-    `inflation` multiplies the variances. With the gradient's covariance `scatter`, S, the covariance is I^-1 S I^-1, valid also for noise
-    correlated between outputs (White 1982).
+    `inflation` multiplies the variances. If the covariance S of the gradient, `scatter`, is given, the covariance of the parameters is I^-1
+    S I^-1, valid also for noise correlated between outputs (White 1982).
 
     The residual is analytic in its complex parameters, so real and imaginary parts each have half of the covariance. The common scale
     factor of a shape and its participation is arbitrary; fixing the largest participation eliminates it.

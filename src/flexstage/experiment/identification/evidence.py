@@ -38,11 +38,11 @@ class Evidence:
     """Identification data: frequency responses for candidate modes, and transform lines for the fit.
 
     `responses` are in the channels' own units, with weights (f, p) of outputs. `lines()` returns the lines of all blocks, with inputs and
-    outputs divided by `input_scale` (m,) and `output_scale` (p,). `density` (f, p) is the unscaled noise per line. `band` is the range of
-    the data in Hz, `resolution` the line spacing in Hz. `inflation` multiplies variances because neighbouring lines are correlated.
-    `coherence` (f, p) is the multiple coherence, if known. `rounding` (p,) is the scaled variance per line caused by rounding of samples.
-    `tones` are all tones found in the outputs; the steady ones are removed. `stored` is true for an analyser's responses, `unstated` if the
-    analyser's window is unknown.
+    outputs divided by `input_scale` (m,) and `output_scale` (p,). `density` (f, p) is the noise variance per line, in the channels' own
+    units. `band` is the range of the data in Hz, `resolution` the line spacing in Hz. `inflation` multiplies variances because neighbouring
+    lines are correlated. `coherence` (f, p) is the multiple coherence, if known. `rounding` (p,) is the scaled variance per line caused by
+    rounding of samples. `tones` are all tones found in the outputs; the steady ones are removed. `stored` is true for an analyser's
+    responses, `unstated` if the analyser's window is unknown.
     """
 
     where: str

@@ -74,7 +74,7 @@ class BandModes:
 
 
 def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: ModeSearch) -> BandModes | None:
-    """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the noise found in the residual.
+    """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the noise variance found in the residual.
 
     `cells` belong to the group's band. Candidates outside the group represent the modes outside the band. Returns `None` if no mode is
     significant.

@@ -57,10 +57,10 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     `what` is a record, several records of one stage (for example six with one driven actuator each), or an analyser's responses. `known`
     are the spectra of all records, which are then not computed again. Tones absent from the inputs are removed from the outputs.
 
-    Candidates are the stable poles of pLSCF on H1. Each group of close candidates is then fitted by maximum likelihood to the transform of
-    the whole record. The fit includes the transient and needs no window, so that it has no leakage. Inputs are assumed to be exact. The
-    noise density of outputs must vary slowly with frequency. Intervals are also valid for noise correlated between outputs (Pintelon &
-    Schoukens 2012, ch. 9 and 10).
+    Candidates are the stable poles that the pLSCF method finds in the H1 estimate of the responses. Each group of close candidates is then
+    fitted by maximum likelihood to the transform of the whole record. The fit includes the transient and needs no window, so that it has no
+    leakage. Inputs are assumed to be exact. The noise density of outputs must vary slowly with frequency. Intervals are also valid for
+    noise correlated between outputs (Pintelon & Schoukens 2012, ch. 9 and 10).
 
     Intervals of a mode are inflated if the residual near it exceeds noise (probability 1/1000). The inflation factor is proportional to the
     residual, or to the scatter between independent parts of the data (`jackknife`) if this is larger. Independent parts are sub-bands,

@@ -16,13 +16,14 @@ _OCTAVES = 6
 def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
     """Compute standard deviations (k,) in Hz of real and imaginary parts of poles, by omitting one group of cells at a time.
 
-    `groups` (c,) are the group numbers of the cells, from 0 to G - 1. The variance is sigma^2 = (G - 1)/G sum |d_g|^2 / 2. The change d_g
-    of the pole without group g is a Newton step, -(I - I_g)^-1 s_g. I_g and s_g are the contributions of the group to information and
-    gradient (Tukey 1958; CR3 of Bell & McCaffrey 2002).
+    `groups` (c,) are the group numbers of the cells, from 0 to G - 1. Without group g, a pole changes by d_g. The variance is sigma^2 = (G
+    - 1)/G sum |d_g|^2 / 2, with the sum over the groups. The changes d_g are Newton steps -(I - I_g)^-1 s_g: I is the Fisher information of
+    all cells, I_g and s_g are the contributions of group g to the information and to the gradient of the likelihood (Tukey 1958; CR3 of
+    Bell & McCaffrey 2002).
 
     Errors of different groups must be independent; errors within a group may be correlated. An error common to all groups is not detected.
-    For few groups, sigma is multiplied by the quantile of Student's t over 1.96, so that 1.96 sigma is half of a 95 % interval. The
-    degrees of freedom are 2 (sum |d|^2)^2 / sum |d|^4 (Satterthwaite 1946), at most 2 (G - 1).
+    For few groups, sigma is multiplied by the 97.5 % quantile of Student's t divided by 1.96, so that 1.96 sigma is half of a 95 %
+    interval. The degrees of freedom of t are 2 (sum |d_g|^2)^2 / sum |d_g|^4 (Satterthwaite 1946), at most 2 (G - 1).
 
     >>> from flexstage.experiment.identification.confidence import deviations
     >>> from flexstage.experiment.example import one_mode_band

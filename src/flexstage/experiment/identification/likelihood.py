@@ -22,7 +22,7 @@ _DIGITS = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Modal:
-    """Modes of a band: H = sum of shape participation / (j f - pole), plus terms of modes outside the band.
+    """Modes of a band: H(f) is the sum over modes of shape times participation / (j f - pole), plus terms of modes outside the band.
 
     `poles` (k,) are in Hz (rad/s over 2 pi). `participation` (k, m+b) has a column for each input and each block's transient; `shapes` is
     (p, k).
@@ -43,9 +43,9 @@ class Band:
     """Data of one band: its cells, and the noise `variance` (p, c) of every output per line in every cell.
 
     `background` (c, b, 8) are the basis functions of modes outside the band, as Legendre coefficients in every cell. `smear` describes how
-    windows smear the lines, if known. `shape` (p, c) is the known relative noise variance over frequency. `rounding` (p,) is the variance
-    per line caused by rounding of samples. The first `inputs` columns of the drive are inputs, the others transients (default: all are
-    inputs).
+    windows smear the lines, if known. `shape` (p, c) is the noise variance of every output in every cell relative to that in other cells,
+    as far as known. `rounding` (p,) is the variance per line caused by rounding of samples. The first `inputs` columns of the drive are
+    inputs, the others transients (default: all are inputs).
     """
 
     cells: Cells
@@ -213,9 +213,9 @@ def noise(band: Band, modal: Modal) -> Array:
 def silence(cells: Cells, rounding: Array | float) -> Array:
     """Compute the lower bound of the noise variance (p, c) per line.
 
-    Cells represent responses to six digits. The relative error e of the cells is common to all N lines, so averaging does not reduce it.
-    The lower bound, N e^2 times the power, prevents false modes and confidence intervals that are too narrow. `rounding` (p,) is the
-    variance caused by rounding of an output's samples, without other noise.
+    Cells represent responses with a relative error e of 1e-6. This error is common to all N lines, so averaging does not reduce it. The
+    lower bound, N e^2 times the power of the output per line, prevents false modes and confidence intervals that are too narrow. `rounding`
+    (p,) is the variance caused by rounding of an output's samples, without other noise.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells
@@ -228,9 +228,9 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
 def scatter(band: Band, modal: Modal) -> Array:
     """Estimate the covariance (q, q) of the likelihood's gradient for noise correlated between outputs.
 
-    The result is the middle matrix of the sandwich estimator (White 1982), for the parameters of `Fit.information`. The result approaches
-    the Fisher information if noise is independent between outputs. The noise is the residual averaged over only 25 lines, because the
-    residual of an unrecorded force follows the resonances. The noise variance is at least `silence`.
+    The result is the middle matrix S of the sandwich estimator I^-1 S I^-1 (White 1982), for the parameters of `Fit.information`, I. S
+    approaches the Fisher information if noise is independent between outputs. The noise is the residual averaged over only 25 lines,
+    because the residual of an unrecorded force follows the resonances. The noise variance is at least `silence`.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())

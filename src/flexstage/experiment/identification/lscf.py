@@ -34,9 +34,10 @@ class Poles:
 def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) -> tuple[Poles, ...]:
     """Estimate the poles of every order from responses H (f, p, m) at `frequencies` in Hz, with weights (f, p) of the outputs.
 
-    The model is the right matrix fraction H = B(z) A(z)^-1 with complex coefficients and z = exp(s T). The band is mapped to half of the
-    unit circle (Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395). Phases of poles are unwrapped about the band's
-    centre. The participation of a pole z_r is the left null vector w of A: near z_r, A^-1 is v w^H / (z - z_r), so that every row of H is a
+    The model is the right matrix fraction H = B(z) A(z)^-1: B and A are matrix polynomials with complex coefficients in z = exp(s T), with
+    the Laplace variable s and the period T. The band is mapped to half of the unit circle (Peeters, Van der Auweraer, Guillaume & Leuridan,
+    Shock Vib. 11 (2004) 395). Phases of poles are unwrapped about the band's centre. The participation of a pole z_r is the left null
+    vector w of A(z_r): near z_r, A^-1 is proportional to v w^H / (z - z_r), with the right null vector v, so that every row of H is a
     multiple of w^H. Returns only stable poles within the band.
 
     >>> lines = np.linspace(8.0, 12.0, 81)

@@ -8,9 +8,10 @@ from flexstage.base.number import Array
 
 
 def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Array) -> Array:
-    """Compute H (f, p, m) = sum of shape participation / (j w - pole) and its conjugate, with poles (k,) in rad/s and frequencies in Hz.
+    """Compute the responses H (f, p, m) of modes at frequencies in Hz, with poles (k,) in rad/s.
 
-    Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1. Shapes (p, k), participation (k, m).
+    At the angular frequency w, H is the sum over modes of shape (p, k) times participation (k, m) / (j w - pole), plus the same term with
+    conjugate shape, participation and pole (Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1).
 
     >>> one = modal_sum(np.array([0.0]), np.array([-1.0 + 10j]), np.array([[1.0]]), np.array([[-0.5j]]))
     >>> round(one.item().real, 6)
@@ -25,10 +26,10 @@ def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Ar
 
 
 def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
-    """Fit residual terms (2, p, m): rest (f, p, m) = lower / w^2 + upper. The shape of `weights` is (f, p); `frequencies` are above 0 [Hz].
+    """Fit two residual terms (2, p, m) to responses (f, p, m): rest = lower / w^2 + upper, at the angular frequencies w.
 
-    The residual terms are the mass line of modes below the band and the stiffness line of modes above the band. Both residual terms are
-    real, because these modes have little damping in the band.
+    The shape of `weights` is (f, p); `frequencies` are above 0 [Hz]. The residual terms are the mass line of modes below the band and the
+    stiffness line of modes above the band. Both residual terms are real, because these modes have little damping in the band.
 
     >>> lines = np.array([1.0, 2.0, 3.0])
     >>> remainder(lines, 5.0 + 1.0 / (2 * np.pi * lines[:, None, None]) ** 2, np.ones((3, 1))).round(9).ravel().tolist()

@@ -114,7 +114,9 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
 
 
 def butterworth(frequencies: Array, order: int, corner: float) -> Array:
-    """Evaluate an analogue Butterworth low-pass filter (f,): product of 1/(s - p_k), p_k = e^{j pi (2k + n + 1)/(2n)}, s = j f/corner.
+    """Evaluate an analogue Butterworth low-pass filter (f,) of order n at frequencies f.
+
+    It is the product over k = 0 ... n - 1 of 1/(s - p_k), with p_k = e^{j pi (2k + n + 1)/(2n)} and s = j f/corner.
 
     >>> abs(butterworth(np.array([0.0, 100.0]), 6, 100.0)).round(4).tolist(), butterworth(np.array([5.0]), 0, 1.0).tolist()
     ([1.0, 0.7071], [(1+0j)])

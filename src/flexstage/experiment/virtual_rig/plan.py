@@ -180,7 +180,7 @@ def _driven_input(part: Actuator, limits: StrokeLimits, name: str) -> DrivenInpu
 
 
 def volts_per_metre(piezo: ChargedActuator) -> float:
-    """Compute the voltage per free stroke [V/m]: the voltage range over the full stroke; NaN without a range.
+    """Compute the voltage per free stroke [V/m]: the voltage range divided by the full stroke; NaN without a range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(volts_per_metre(stacks(double_triangle())["B4"]))

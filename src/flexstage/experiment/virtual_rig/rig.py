@@ -25,10 +25,11 @@ def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: D
     """Simulate the record of a test: inputs are strokes, voltages, currents or forces, outputs are gauges, with names and units.
 
     `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` replaces the model's damping. The drive of each
-    actuator is band-limited Gaussian noise, filtered by the amplifier 1/(1 + j f/f_a). Gauges add noise to the stage's motion; lag,
-    anti-alias filter, drift and quantisation follow, in this order. The record starts in the steady state. Strokes are free strokes around
-    the bias. The stage is linear; its response to the continuous noise is exact. Structural damping is converted to equivalent modal
-    damping ratios, with a note in the record's name. Samples are computed on demand, in blocks; equal set-ups give equal samples.
+    actuator is band-limited Gaussian noise, filtered by the amplifier's lag 1/(1 + j f/f_a) with the corner frequency f_a. Gauges add noise
+    to the stage's motion; lag, anti-alias filter, drift and quantisation follow, in this order. The record starts in the steady state.
+    Strokes are free strokes around the bias. The stage is linear; its response to the continuous noise is exact. Structural damping is
+    converted to equivalent modal damping ratios, with a note in the record's name. Samples are computed on demand, in blocks; equal set-ups
+    give equal samples.
 
     Raises `DesignError` with all errors. Examples are an invalid duration, a rate below twice the highest platform mode, unknown actuators,
     missing gauges, and peaks that exceed strokes, currents or gauge ranges.

@@ -28,9 +28,9 @@ _SINGULAR = 1e9
 class Command:
     """Command of the nominal stage: the nominal matrices that a controller uses.
 
-    `gains` (n, f) are the strokes per unit motion along each of the `coordinates` at `point`: R_a, corrected for lost motion. `strokes`
-    (n,) are the full strokes of the stacks, which are proportional to voltage. `reference` (3,) is the position of `point`. `sensing` (6,
-    g) is R_s^-1, from gauges to the pose at the point; it is absent if the gauges do not determine the pose.
+    `gains` (n, f) are the strokes per unit motion along each of the `coordinates` at `point`: the mapping R_a, corrected for lost motion.
+    `strokes` (n,) are the full strokes of the stacks, which are proportional to voltage. `reference` (3,) is the position of `point`.
+    `sensing` (6, g) is the mapping R_s^-1 from gauges to the pose at the point; it is absent if the gauges do not determine the pose.
     """
 
     point: str
@@ -122,10 +122,12 @@ def _quantity(row: str, column: str) -> Quantity:
 def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
     """Compute the motion per command (...) of a stage with scatter, or of a batch, in the sequence of `pose_measures`.
 
-    In open loop (`open`), the stacks have the voltages of the nominal stage: x = X T (stroke / nominal stroke) C e_j. X transfers the
-    motion to the nominal point, T = dx/da is the elastic gain of the stage with scatter, and C corrects the nominal lost motion. In closed
-    loop (`held`), a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j. For the
-    nominal stage, open and closed loop give the identity matrix, plus parasitic motions in open loop with fewer than six motions.
+    In open loop (`open`), the stacks have the voltages of the nominal stage. The motion for a unit command e_j is x = X T (stroke / nominal
+    stroke) C e_j. C are the nominal strokes per command, corrected for lost motion (`Command.gains`), the ratio is that of full strokes, T
+    are the motions per stroke of the elastic stage with scatter, and X transfers the motion to the nominal point. In closed loop (`held`),
+    a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j, where R_s,real are the
+    readings per motion of the stage with scatter. For the nominal stage, open and closed loop give the identity matrix, plus parasitic
+    motions in open loop with fewer than six motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import bench_of

@@ -70,8 +70,8 @@ class Copies(Plan):
 class Tolerance(Study):
     """A tolerance study: `scatters` are the entries of `[scatter]`, which define the study's variables; `limits` are the specification.
 
-    `targets` are the numbers with scatter. `wanted` is the required yield of each requirement. `commanded` contains the nominal matrices
-    for crosstalk at a point; if it is absent, no crosstalk is computed.
+    `targets` are the numbers with scatter, and the variables that change them. `wanted` is the required yield of each requirement.
+    `commanded` contains the nominal matrices for crosstalk at a point; if it is absent, no crosstalk is computed.
     """
 
     scatters: tuple[Scatter, ...]

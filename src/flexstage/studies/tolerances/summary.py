@@ -33,10 +33,10 @@ class Spread:
     """Distributions of r responses over the samples with values. `nominal` contains the values of the nominal design.
 
     `percentiles` (5, r) are the percentiles 1, 5, 50, 95 and 99. `linear` (r,) is the standard deviation by first-order propagation,
-    sqrt(sum (dy/dx s)^2). `trusted` (r,): the response is smooth, and the deviation of the sample agrees with `linear` within 10 % or four
-    standard errors. `by_slope` (m, r) are the fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample`
-    (m, r) are the variances of samples with scatter of a single entry, relative to the sum over all entries. `by_slope` and `by_sample` are
-    NaN for a constant response.
+    sqrt(sum (dy/dx s)^2), with the sum over all variables x with the standard deviation s. `trusted` (r,): the response is smooth, and the
+    deviation of the sample agrees with `linear` within 10 % or four standard errors. `by_slope` (m, r) are the fractions of the variance
+    due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the variances of samples with scatter of a single entry,
+    divided by the sum of these variances over all entries. `by_slope` and `by_sample` are NaN for a constant response.
     """
 
     names: tuple[str, ...]
@@ -133,8 +133,9 @@ class Yields:
 class Crosstalk:
     """Pose error per unit of command (6, f) over the samples: rows are motions, columns are commands. The commanded motion is subtracted.
 
-    `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal` and `mean` are
-    signed. `deviation` is the standard deviation, `usual` the 95th percentile of the absolute errors, and `worst` their maximum, all in SI.
+    `kind` is `open` (strokes commanded by the nominal mapping R_a) or `held` (pose regulated as measured with the nominal mapping R_s^-1).
+    `nominal` and `mean` are signed. `deviation` is the standard deviation, `usual` the 95th percentile of the absolute errors, and `worst`
+    their maximum, all in SI.
     """
 
     kind: str

@@ -33,13 +33,14 @@ class Drive:
 def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[Drive]:
     """Test whether the recorded inputs excite each mode, band by band.
 
-    The modal motion q is the output after subtraction of all other fitted components, weighted by shape and noise. The modal force plus
-    output noise is q (j f - p), where p is the pole in Hz. The modal force is regressed on inputs and transients. The regression uses the
-    lines within four half-widths, at least three times as many as regressors. Without excitation by the inputs the explained fraction is
-    F-distributed, regardless of unrecorded forces or tones. The variance of a line is a + b |j f - p|^2, where b is the noise of the
-    outputs. The variance a of the unrecorded force follows from the residual. As many lines as there are regressors, those nearest to the
-    pole, have equal weights. Transients count as inputs if the inputs explain at least nine tenths of their power, as for an impact at the
-    start of a record.
+    The modal motion q is what remains of the outputs after subtraction of all other fitted components, as a mean weighted with the shape
+    and the inverse noise variance. At the frequency f, the modal force plus output noise is q (j f - p), where p is the pole in Hz. The
+    modal force is regressed on inputs and transients. The regression uses the lines within four half-widths, at least three times as many
+    as regressors. Without excitation by the inputs the explained fraction is F-distributed, regardless of unrecorded forces or tones. A
+    line is weighted with the inverse of its variance a + b |j f - p|^2: a is the variance of the unrecorded force, which follows from the
+    residual, and b is the variance of q due to noise of the outputs. The lines nearest to the pole, as many as there are regressors, have
+    similar weights. Transients count as inputs if the inputs explain at least nine tenths of their power, as for an impact at the start of
+    a record.
 
     >>> from flexstage.experiment.example import one_mode_band, one_mode_record
     >>> from flexstage.experiment.identification.likelihood import fit

@@ -65,9 +65,9 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[list
     """Compute output covariances of bands from `low` to `high` in Hz by division and block, and the output density in unit/Hz^0.5.
 
     Each block is Fourier transformed. The lines of a band, tapered at its ends, are multiplied in pairs of outputs. The inverse transform
-    of the products is the band's covariance R(l) = E[y(n + l) y(n)^H]. This procedure is equivalent to mixing and decimation. R is divided
-    by 1 - l/N, the fraction of the block's N samples available at lag l. Outputs are divided by their root mean squares. The density of the
-    floor motion need only be smooth within each band.
+    of the products is the band's covariance R(l) = E[y(n + l) y(n)^H] of the outputs y. This procedure is equivalent to mixing and
+    decimation. R is divided by 1 - l/N, the fraction of the block's N samples available at lag l. Outputs are divided by their root mean
+    squares. The density of the floor motion need only be smooth within each band.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
@@ -99,8 +99,8 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[list
 def searched_from(low: float, high: float, *, outputs: int, resolution: float) -> float:
     """Compute the lowest frequency [Hz] between `low` and `high` that can be searched; infinite if no band has enough lines.
 
-    Covariances of a band with N lines repeat after N lags. A band must therefore have twice as many lines as the minimum number of block
-    rows requires. `resolution` [Hz] is the line spacing of a block.
+    Covariances of a band with N lines repeat after N lags. A band must therefore have twice as many lines as the smallest Hankel matrix has
+    lags. `resolution` [Hz] is the line spacing of a block.
 
     >>> round(searched_from(0.1, 100.0, outputs=6, resolution=0.02), 1), searched_from(50.0, 50.1, outputs=6, resolution=1.0)
     (1.4, inf)
@@ -172,14 +172,15 @@ def _roots(covariances: Array, rows: int) -> tuple[Array, Array]:
 def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[AmbientMode]]:
     """Identify the modes of a band by stochastic subspace identification, with the stabilisation diagram.
 
-    The Hankel matrix of covariances is factored as H = O Z for increasing orders; the poles follow from O(shifted) = O A. H is weighted
-    with the inverse roots W and V of the future and past covariances. The singular values of W H V are canonical correlations: weakly and
-    strongly excited modes have equal weight (Van Overschee & De Moor, Subspace Identification for Linear Systems, 1996, ch. 3; Peeters &
-    De Roeck, MSSP 13 (1999) 855).
+    The Hankel matrix H of covariances is factored as H = O Z for increasing orders. O is the observability matrix; the poles follow from
+    the state matrix A in O(shifted) = O A. H is weighted with the inverse matrix roots W and V of the future and past covariances. The
+    singular values of W H V are canonical correlations: weakly and strongly excited modes have equal weight (Van Overschee & De Moor,
+    Subspace Identification for Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855).
 
-    The equations are projected onto the signal subspace of the whole record, U^H W H(shifted) V = Lambda U^H W H V. Standard deviations
-    follow from a first-order perturbation by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the
-    band bias low orders, and spurious poles bias high orders: the order is therefore selected for each mode (`_select_order`).
+    The equations are projected onto the signal subspace of the whole record, the first singular vectors U and R of W H V. A then has the
+    eigenvalues of (U^H W H V R)^-1 U^H W H(shifted) V R. Standard deviations follow from a first-order perturbation of this projection by
+    the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band bias low orders, and spurious poles
+    bias high orders: the order is therefore selected for each mode (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)

@@ -77,11 +77,11 @@ def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, .
 def remove_tones(record: Record) -> tuple[Record, tuple[Tone, ...]]:
     """Remove steady tones from the outputs of a record, and return all tones.
 
-    A tone is a sinusoid of constant amplitude and phase. After subtraction of the response to the inputs, the line of a tone has eight
-    times the power of neighbouring lines. The line also passes Thomson's harmonic F-test (Thomson, Proc. IEEE 70 (1982) 1055, 13; with sine
-    tapers, Riedel & Sidorenko 1995). The false-alarm rate is 1e-9 for noise and noise-excited resonances. Tones also present in an input
-    remain in the record. Free oscillations also remain; they are tones with a decay of more than five standard deviations. A resonance
-    without measurable decay counts as a tone, because the record cannot distinguish the two.
+    A tone is a sinusoid of constant amplitude and phase. After subtraction of the response to the inputs, the line of a tone has at least
+    eight times the power of neighbouring lines. The line also passes Thomson's harmonic F-test (Thomson, Proc. IEEE 70 (1982) 1055, 13;
+    with sine tapers, Riedel & Sidorenko 1995). The false-alarm rate is 1e-9 for noise and noise-excited resonances. Tones also present in
+    an input remain in the record. Free oscillations also remain; they are tones with a decay of more than five standard deviations. A
+    resonance without measurable decay counts as a tone, because the record cannot distinguish the two.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.records.record import InMemory

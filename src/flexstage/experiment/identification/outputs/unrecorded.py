@@ -104,9 +104,10 @@ def _is_double(first: AmbientMode, second: AmbientMode) -> bool:
 def identify_decay(records: Sequence[Record], search: Search) -> Identified:
     """Identify modes of free decays from outputs only: the transform of a decay is a frequency response with the stage's poles.
 
-    For y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}). Each decay is therefore
-    treated like an input, and its amplitudes a like participations. A decay starts at the largest outputs, relative to their root mean
-    squares, and ends with the record. Each record is one decay; it shows only one combination of repeated modes.
+    A decay is a sum over modes, y(n) = sum phi a e^{p n T}, with the shapes phi, amplitudes a and poles p, and the time step T. Its
+    transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}) at the angular frequency w. Each decay is therefore treated
+    like an input, and its amplitudes a like participations. A decay starts at the largest outputs, relative to their root mean squares; all
+    decays are cut to the length of the shortest. Each record is one decay; it shows only one combination of repeated modes.
     """
     starts = [_largest(record) for record in records]
     size = min(record.length - start for record, start in zip(records, starts, strict=True))
