@@ -67,10 +67,9 @@ class Analysis(InNotebook):
 
     `loaded` is the effect of the permanent load. If the permanent load is significant, statics, modes, responses (`under_load`), lost
     motion, drift, error budget and their verdicts are for the loaded stage. All other results and the linear model `linear` belong to the
-    nominal stage. `second_order` is the small-displacement error over the required strokes; without required strokes, over the available
-    strokes.
-    `ends` contains the critical load factors at both ends of each load path, computed up to the required factor (None without load paths).
-    The error budget is for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
+    nominal stage. `second_order` is the small-displacement error for the required strokes; without required strokes, for the available
+    strokes. `ends` contains the critical load factors at both ends of each load path, computed up to the required factor (None without load
+    paths). The error budget is for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
 
     `freedoms` contains the stiffness along ideal motions and constraints (None for six ideal motions). `mass` is the platform's effective
     mass. `stress` is at the required strokes; for force-driven stages without required strokes, at peak current.

@@ -104,7 +104,8 @@ def _with(text: str, unit: str, form: str = "{} [{}]") -> str:
 def quiet(values: Array, against: Array | None = None) -> Array:
     """Return a copy of a matrix (rows, columns) with rounding noise set to 0 (`NOISE_RULE`).
 
-    `against` is a matrix of equal shape that determines the scale of rows and columns (default: the matrix itself).
+    Entries are compared with the largest entries of their row and column in `against`, a matrix of equal shape (default: the matrix
+    itself).
 
     >>> quiet(np.array([[1.0, 1e-15], [1e-15, 2.0]])).tolist()
     [[1.0, 0.0], [0.0, 2.0]]

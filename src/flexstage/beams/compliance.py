@@ -35,7 +35,8 @@ class Law:
     """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` DOFs.
 
     `inner` (..., m) [1/s^2] are the squared angular frequencies of m mass-normalised fixed-end modes (default: no modes). These modes are
-    additional coordinates of the lumped model. The mass matrix of the link has the shape (..., 12 + m, 12 + m): the modes follow the ends.
+    additional coordinates of the lumped model. The mass matrix of the link has the shape (..., 12 + m, 12 + m): first the motions of both
+    ends, then the modes.
     """
 
     stiffness: Array

@@ -106,7 +106,7 @@ class ComparedMode:
 
     @property
     def uncertainty(self) -> Annotated[float | None, INNER, RATIO, Heading("+-", digits=2, unit="%")]:
-        """Half the width of the 95 % interval, relative to the measured frequency."""
+        """Half the width of the 95 % interval, divided by the measured frequency."""
         if self.experiment is None:
             return None
         low, high = self.experiment.frequency_interval
@@ -183,7 +183,7 @@ class Compared(InNotebook):
 
 @check_arguments
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
-    """Compare the platform's modes in model, finite elements (optional) and test.
+    """Compare the platform's modes in the model, in finite elements (optional) and in the test.
 
     Shapes are compared at the outputs common to record and stage by the modal assurance criterion (MAC, Allemang & Brown 1982). For
     measured shapes, the real part is used. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to

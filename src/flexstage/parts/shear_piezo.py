@@ -87,10 +87,10 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def compliance(self) -> Array:
-        """Compliance (..., 6, 6) about the centre: 1/k_a along x, 1/k along y and similarly along z, and for rotations L/(G J) and L/(E I).
+        """Compliance (..., 6, 6) about the centre: 1/k_a along x, 1/k along y (similarly along z), L/(G J) about x, L/(E I) about y and z.
 
-        The shear modulus G follows from the shear compliance L / (k_s G A) with k_s = 5/6 (parabolic shear stress). Torsion is
-        Saint-Venant's. Both faces remain plane.
+        G J and E I are the torsional and bending rigidities. The shear modulus G follows from the shear compliance L / (k_s G A) with k_s =
+        5/6 (parabolic shear stress). Torsion is Saint-Venant's. Both faces remain plane.
         """
         about_y, about_z = self.bending
         shear = self.shear_compliance

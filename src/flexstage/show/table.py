@@ -39,7 +39,7 @@ class Cell:
 
     @property
     def length(self) -> float:
-        """Length of the bar relative to the cell, limited to the cell."""
+        """Length of the bar as a fraction of the cell's width, at most 1."""
         return min(max(self.bar or 0.0, 0.0), 1.0)
 
 
@@ -550,7 +550,7 @@ def _mark_of(text: str) -> Mark:
 
 
 def first_design(values: Array, axes: int) -> Array:
-    """Return the real values of the first design of a batch of arrays, whose last `axes` axes belong to a design.
+    """Return the real values of the first design of a batch. The last `axes` axes of the array belong to a design, the others to the batch.
 
     >>> first_design(np.ones((4, 2, 2)), 2).shape
     (2, 2)

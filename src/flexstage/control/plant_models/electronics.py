@@ -78,7 +78,7 @@ class ChargeDrive:
 
     @property
     def stiffening(self) -> Annotated[float, VIEW]:
-        """Axial stiffness at constant charge relative to constant voltage, 1/(1 - k^2).
+        """Axial stiffness at constant charge, divided by that at constant voltage: 1/(1 - k^2) with the coupling k.
 
         A stack with open electrodes has constant charge (Preumont, Vibration Control of Active Structures, 2018, chapter 4).
 

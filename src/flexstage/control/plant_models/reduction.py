@@ -43,7 +43,7 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 
 
 def resonances(given: Plant) -> Array:
-    """Compute the resonance peak (k,) of every mode between strokes and pose, relative to a static stroke-to-pose gain of 1.
+    """Compute the peak (k,) of every mode at resonance in the response from strokes to pose, whose static gain is 1.
 
     With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2), with the modal output c, the
     modal input b, the damping ratio zeta and the angular frequency omega. The peak of a mode at 0 Hz is infinite.

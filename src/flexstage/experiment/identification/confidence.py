@@ -41,12 +41,13 @@ class Deviations:
 
 
 def misfits(band: Band, modal: Modal) -> Array:
-    """Compute the residual of the fit near each mode (k,) relative to the band's noise; 1 if not significant.
+    """Compute the rms residual of the fit near each mode (k,), divided by the rms noise of the band; 1 if not significant.
 
-    With noise only, the residual has the same level everywhere, apart from the degrees of freedom that the mode uses. Outputs whose noise
-    is coherent count as one output. A residual is significant if noise causes it with a probability below 1/1000: the mode is then
-    nonlinear, not viscously damped, or not isolated. Neighbourhoods of 1.5 and of 4 half-widths are tested. A mode that varies, or has
-    unrecorded excitation, has the largest residual in the neighbourhood of 1.5 half-widths.
+    With noise only, the residual has the level of the noise everywhere, after correction for the degrees of freedom that the mode uses.
+    Outputs whose noise is coherent count as one output. A residual is significant if noise causes it with a probability below 1/1000: the
+    mode is then nonlinear, not viscously damped, or not isolated. Two neighbourhoods of a mode are tested: frequencies within 1.5 and
+    within 4 half-widths. A mode that varies, or has unrecorded excitation, has the largest residual in the neighbourhood of 1.5
+    half-widths.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise

@@ -37,12 +37,12 @@ _ROUNDING = 1e-13
 class Evidence:
     """Identification data: frequency responses for candidate modes, and transform lines for the fit.
 
-    `responses` are in the channels' own units, with weights (f, p) of outputs. `lines()` returns the lines of all blocks, with inputs and
-    outputs divided by `input_scale` (m,) and `output_scale` (p,). `density` (f, p) is the noise variance per line, in the channels' own
-    units. `band` is the range of the data in Hz, `resolution` the line spacing in Hz. `inflation` multiplies variances because neighbouring
-    lines are correlated. `coherence` (f, p) is the multiple coherence, if known. `rounding` (p,) is the scaled variance per line caused by
-    rounding of samples. `tones` are all tones found in the outputs; the steady ones are removed. `stored` is true for an analyser's
-    responses, `unstated` if the analyser's window is unknown.
+    `responses` are in the channels' own units; `weights` (f, p) are the weights of the outputs. `lines()` returns the lines of all blocks,
+    with inputs and outputs divided by `input_scale` (m,) and `output_scale` (p,). `density` (f, p) is the noise variance per line, in the
+    channels' own units. `band` is the range of the data in Hz, `resolution` the line spacing in Hz. `inflation` multiplies variances
+    because neighbouring lines are correlated. `coherence` (f, p) is the multiple coherence, if known. `rounding` (p,) is the scaled
+    variance per line caused by rounding of samples. `tones` are all tones found in the outputs; the steady ones are removed. `stored` is
+    true for an analyser's responses, `unstated` if the analyser's window is unknown.
     """
 
     where: str
@@ -73,11 +73,11 @@ class Evidence:
         return np.interp(frequencies, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines))
 
     def shape(self, cells: Cells) -> Array:
-        """Return the relative noise variance (p, c) of every output over cells: from stored coherence, else uniform."""
+        """Return the noise variance (p, c) of every output in each cell relative to other cells: from stored coherence, else uniform."""
         return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
 
     def variance(self, low: float, high: float) -> Array:
-        """Estimate the noise variance (p,) per line of the scaled outputs: the median over `low` to `high` in Hz."""
+        """Estimate the noise variance (p,) per line of the scaled outputs: the median over the lines from `low` to `high` in Hz."""
         inside = (self.responses.frequencies >= low) & (self.responses.frequencies <= high)
         chosen = self.density[inside] if np.any(inside) else self.density
         floor = 1e-10 * np.max(self.density, axis=0)

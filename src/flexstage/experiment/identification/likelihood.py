@@ -44,8 +44,8 @@ class Band:
 
     `background` (c, b, 8) are the basis functions of modes outside the band, as Legendre coefficients in every cell. `smear` describes how
     windows smear the lines, if known. `shape` (p, c) is the noise variance of every output in every cell relative to that in other cells,
-    as far as known. `rounding` (p,) is the variance per line caused by rounding of samples. The first `inputs` columns of the drive are
-    inputs, the others transients (default: all are inputs).
+    if known. `rounding` (p,) is the variance per line caused by rounding of samples. The first `inputs` columns of the drive are inputs,
+    the others transients (default: all are inputs).
     """
 
     cells: Cells
@@ -181,7 +181,7 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Compute the outputs that modes and background explain, block by block, as factors (p, c, 8, n) of the products Z of `Cells`.
+    """Compute the outputs that modes and background explain, block by block, as factors (p, c, 8, n) for the products Z of `Cells`.
 
     Yields the indices of the block's cells and the factors in these cells.
 
@@ -197,7 +197,7 @@ def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
 
 
 def noise(band: Band, modal: Modal) -> Array:
-    """Estimate the noise variance (p, c) per line of every output in every cell: the mean of the residual over 100 lines or more.
+    """Estimate the noise variance (p, c) per line of every output in every cell: the mean residual power over 100 lines or more.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -229,8 +229,8 @@ def scatter(band: Band, modal: Modal) -> Array:
     """Estimate the covariance (q, q) of the likelihood's gradient for noise correlated between outputs.
 
     The result is the middle matrix S of the sandwich estimator I^-1 S I^-1 (White 1982), for the parameters of `Fit.information`, I. S
-    approaches the Fisher information if noise is independent between outputs. The noise is the residual averaged over only 25 lines,
-    because the residual of an unrecorded force follows the resonances. The noise variance is at least `silence`.
+    approaches the Fisher information if noise is independent between outputs. The covariance of the noise is the residual power averaged
+    over only 25 lines, because the residual of an unrecorded force follows the resonances. The variance of the noise is at least `silence`.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())

@@ -34,7 +34,7 @@ _LINES = 4096
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Transfer functions from white noise of unit variance to the signals of the measuring chain, at the spectral lines of a transform.
+    """Transfer functions from white noise of unit variance to the signals of the measuring chain, at the lines of a Fourier transform.
 
     The transform covers three blocks of `size` samples; the sampling rate is multiplied by `finer`. `strokes` (l, m) are transfer functions
     to the inputs after the amplifiers. `inputs` (l, m) lead to the recorded inputs [m, A or N], `outputs` (l, p, m) to the gauge readings

@@ -30,7 +30,7 @@ def white(seed: int, stream: Stream, channel: int, block: int, size: int) -> Arr
 
 
 def walk(seed: int, channel: int, block: int, size: int) -> Array:
-    """Generate a block (size,) of a random walk of unit steps, continuous over blocks.
+    """Generate a block (size,) of a random walk with steps of unit variance; successive blocks are continuous.
 
     The walk's values at the blocks' ends are drawn first, and each block is a Brownian bridge between them: blocks are independent.
 

@@ -40,7 +40,7 @@ class LinkStress(InNotebook):
 
     @property
     def safety(self) -> Annotated[Array, RATIO, Along("names"), Heading(digits=4)]:
-        """Safety factor (L,): yield stress over highest stress."""
+        """Safety factor (L,): yield stress divided by highest stress."""
         return self.yield_stress / self.highest
 
     @property

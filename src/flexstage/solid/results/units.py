@@ -68,7 +68,7 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def loss(self) -> Annotated[float, RATIO, Heading(unit="%")]:
-        """Lost motion relative to the ideal output."""
+        """Lost motion divided by the ideal output."""
         return 1.0 - self.gain / self.ideal_gain
 
     @property

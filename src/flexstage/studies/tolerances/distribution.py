@@ -32,7 +32,7 @@ class Distribution:
     offset: float = 0.0
 
     def quantile(self, shares: Array) -> Array:
-        """Compute deviations at given probabilities `shares`, 0 to 1, by the inverse of the cumulative distribution.
+        """Compute the deviations at the cumulative probabilities `shares`, 0 to 1, by the inverse of the cumulative distribution.
 
         >>> Distribution(Shape.UNIFORM, 2.0, offset=1.0).quantile(np.array([0.0, 0.5, 1.0])).tolist()
         [-1.0, 1.0, 3.0]
@@ -46,7 +46,10 @@ class Distribution:
 
     @property
     def deviation(self) -> float:
-        """Standard deviation; for a truncated normal distribution, sigma sqrt(1 - 2 a phi(a) / (2 Phi(a) - 1)) with a = within / sigma.
+        """Standard deviation, also of a truncated normal distribution.
+
+        With sigma = `size` and a = `within` / sigma, the latter is sigma sqrt(1 - 2 a phi(a) / (2 Phi(a) - 1)), where phi and Phi are the
+        density and the cumulative distribution of the standard normal distribution.
 
         >>> round(Distribution(Shape.NORMAL, 1.0, within=1.0).deviation, 4), Distribution(Shape.UNIFORM, 3.0**0.5).deviation
         (0.5396, 1.0)

@@ -66,14 +66,15 @@ class Scatter:
 class Deviation(Variable):
     """A deviation of numbers, from a `distribution`. `scatter` is the name of its entry.
 
-    Deviations are between `low` and `high`. `relative`: deviations are fractions of the design's value (0.01 is one per cent).
+    Bounded deviations are between `low` and `high`; normal deviations without bounds are rarely outside (five standard deviations).
+    `relative`: deviations are fractions of the design's value (0.01 is one per cent).
     """
 
     distribution: Distribution = NONE
     scatter: str = ""
 
     def at(self, shares: Array) -> Array:
-        """Compute deviations at given probabilities `shares` (n,)."""
+        """Compute the deviations at the cumulative probabilities `shares` (n,)."""
         return self.distribution.quantile(shares)
 
     def text(self, value: float) -> str:

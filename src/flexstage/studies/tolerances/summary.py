@@ -34,9 +34,9 @@ class Spread:
 
     `percentiles` (5, r) are the percentiles 1, 5, 50, 95 and 99. `linear` (r,) is the standard deviation by first-order propagation,
     sqrt(sum (dy/dx s)^2), with the sum over all variables x with the standard deviation s. `trusted` (r,): the response is smooth, and the
-    deviation of the sample agrees with `linear` within 10 % or four standard errors. `by_slope` (m, r) are the fractions of the variance
-    due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the variances of samples with scatter of a single entry,
-    divided by the sum of these variances over all entries. `by_slope` and `by_sample` are NaN for a constant response.
+    standard deviation of the sample agrees with `linear` within 10 % or four standard errors. `by_slope` (m, r) are the fractions of the
+    variance due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the variances of samples with scatter of a single
+    entry, divided by the sum of these variances over all entries. `by_slope` and `by_sample` are NaN for a constant response.
     """
 
     names: tuple[str, ...]
@@ -131,11 +131,11 @@ class Yields:
 
 @dataclass(frozen=True, eq=False)
 class Crosstalk:
-    """Pose error per unit of command (6, f) over the samples: rows are motions, columns are commands. The commanded motion is subtracted.
+    """Statistics of the pose error per unit of command (6, f) over the samples: rows are motions, columns are commands.
 
-    `kind` is `open` (strokes commanded by the nominal mapping R_a) or `held` (pose regulated as measured with the nominal mapping R_s^-1).
-    `nominal` and `mean` are signed. `deviation` is the standard deviation, `usual` the 95th percentile of the absolute errors, and `worst`
-    their maximum, all in SI.
+    The commanded motion is subtracted from the pose. `kind` is `open` (strokes commanded by the nominal mapping R_a) or `held` (pose
+    regulated as measured with the nominal mapping R_s^-1). `nominal` and `mean` are signed. `deviation` is the standard deviation, `usual`
+    the 95th percentile of the absolute errors, and `worst` their maximum, all in SI.
     """
 
     kind: str
@@ -247,7 +247,7 @@ def _ratio(parts: Array, whole: Array) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
-    """Compute the variance (m, r), or the mean square about a `centre`, of the samples with scatter of a single entry.
+    """Compute the variances (m, r) of r responses in the samples with scatter of a single entry, or their mean squares about a `centre`.
 
     If the study has only one entry, the whole sample is used.
     """

@@ -78,12 +78,12 @@ class Function:
 
     @property
     def is_time(self) -> bool:
-        """Whether the function is a time history: of function type 1, or of type 0 (general) over time."""
+        """Whether the function is a time history: of function type 1, or of type 0 (general) as a function of time."""
         return not self.is_complex and (self.kind == TIME or (self.kind == 0 and self.abscissa.kind == _TIME_AXIS))
 
     @property
     def is_response(self) -> bool:
-        """Whether the function is a frequency response: type 4, type 5 (transmissibility), or type 0 if complex and over frequency."""
+        """Whether it is a frequency response: of type 4, 5 (transmissibility), or 0 with complex values as a function of frequency."""
         return self.kind in (RESPONSE, TRANSMISSIBILITY) or (self.kind == 0 and self.is_complex and self.abscissa.kind == _FREQUENCY_AXIS)
 
     @property

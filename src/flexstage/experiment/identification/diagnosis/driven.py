@@ -22,8 +22,8 @@ _HALVINGS = 40
 class Drive:
     """Excitation of the modes (k,) of a band by the recorded inputs.
 
-    `chance` (k,) is the probability that modes not excited by the inputs show at least the observed correlation. `elsewhere` (k,) is the
-    fraction of the motion in the half-power band that the inputs do not explain.
+    `chance` (k,) is the probability that a mode that the inputs do not excite shows at least the observed correlation with the inputs.
+    `elsewhere` (k,) is the fraction of the motion in the half-power band that the inputs do not explain.
     """
 
     chance: Array

@@ -51,8 +51,8 @@ class Peak:
     """Peak at `frequency` in Hz, with a half-power `width` in Hz; the width is absent if it is at most one line.
 
     `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of this
-    peak without a mode. By chance, noise may be as pure as a tone, or as strong as a weak or narrow peak, or inputs may explain as much
-    motion of an undriven peak. An accepted mode has a probability of at most 1e-9, and a width above the line spacing.
+    peak without a mode: that noise is as pure as a tone, that noise is as strong as a weak or narrow peak, or that inputs explain as much
+    motion as in an undriven peak. An accepted mode has a probability of at most 1e-9, and a width above the line spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -144,7 +144,7 @@ def _is_listed(pole: complex, poles: Iterable[complex], found: Sequence[Peak], s
 
 
 def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Channel], size: Array) -> list[Peak]:
-    """List the tones of records as peaks with their dominant outputs; near tones are merged. `size` (p,) is the rms of each output.
+    """List the tones of records as peaks with their dominant outputs; close tones are merged. `size` (p,) is the rms of each output.
 
     >>> outputs = (Channel("S1"), Channel("S2"))
     >>> hums = [Tone(50.0 + 1e-4 * each, np.array([0.3, 1e-6]), 0, 1000, 1e-12) for each in range(2)]

@@ -148,7 +148,7 @@ def _folded(count: int) -> int:
 
 
 def hankel(covariances: Array, rows: int, first: int) -> Array:
-    """Assemble the block Hankel matrix (rows p, rows p) of covariances (lags, p, p) from lag `first`.
+    """Assemble the block Hankel matrix (rows p, rows p) from the covariances (lags, p, p) of p outputs, beginning with lag `first`.
 
     >>> hankel(np.arange(4.0)[:, None, None], 2, 1).tolist()
     [[1.0, 2.0], [2.0, 3.0]]
