@@ -94,7 +94,8 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
 def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
     """Pair model and identified modes that have a modal assurance (MAC) above 0.7 at the gauges, and a frequency ratio below e^0.5.
 
-    An identified shape is compared with the span of all model modes within 5 % of the frequency of a candidate mode: close modes mix.
+    An identified shape is compared with the space of all model modes within 5 % of the frequency of a candidate mode, because close modes
+    mix.
     """
     kept = _kept(given)
     rows = [channel.name for channel in model.outputs]

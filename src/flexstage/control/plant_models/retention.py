@@ -61,8 +61,8 @@ def retention(whole: Plant, closed: Loop) -> Retention:
 
     An omitted mode is significant if it meets one of three criteria. By the first criterion, the mode's loop gain at resonance, with other
     loops and axes closed, is at least 0.1. For a pulse transfer function a b psi(z) of the mode, with the vectors a to the pose and b from
-    the commands, this loop gain is |a| |psi| |b K S|, with the controller K and the sensitivity S. The loop gain is exact between hold and
-    sampler, also above half the sampling rate. By the second criterion, the mode makes the true platform motion ring by at least `RINGING`
+    the commands, this loop gain is |a| |psi| |b K S|, with the controller K and the sensitivity S. The loop gain includes hold and sampling
+    exactly, also above half the sampling rate. By the second criterion, the mode makes the true platform motion ring by at least `RINGING`
     along any axis after a step. By the third criterion, the margins require the mode. If no mode meets the first criterion, modes are added
     by decreasing loop gain until the others change no margin by more than `MARGIN_CHANGE`.
 

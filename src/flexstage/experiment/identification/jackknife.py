@@ -18,7 +18,7 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
 
     `groups` (c,) are the group numbers of the cells, from 0 to G - 1. Without group g, a pole changes by d_g. The variance is sigma^2 = (G
     - 1)/G sum |d_g|^2 / 2, with the sum over the groups. The changes d_g are Newton steps -(I - I_g)^-1 s_g: I is the Fisher information of
-    all cells, I_g and s_g are the contributions of group g to the information and to the gradient of the likelihood (Tukey 1958; CR3 of
+    all cells, I_g and s_g are the contributions of group g to the information and to the gradient of the log-likelihood (Tukey 1958; CR3 of
     Bell & McCaffrey 2002).
 
     Errors of different groups must be independent; errors within a group may be correlated. An error common to all groups is not detected.

@@ -40,7 +40,7 @@ Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]
 
 @dataclass(frozen=True, eq=False)
 class DistinctHinge:
-    """A distinct hinge: `shared` is the name of its part, `form` is its shape for FEA, `links` are the drawn links with this hinge."""
+    """A distinct hinge: `shared` is the name of its part, `form` is its input for FEA, `links` are the drawn links with this hinge."""
 
     shared: Annotated[str, INNER]
     form: Annotated[HingeForm, INNER]

@@ -66,7 +66,7 @@ class Scatter:
 class Deviation(Variable):
     """A deviation of numbers, from a `distribution`. `scatter` is the name of its entry.
 
-    Bounded deviations are between `low` and `high`; normal deviations without bounds are rarely outside (five standard deviations).
+    Bounded deviations are between `low` and `high`; for an unbounded normal distribution, these are -5 and 5 standard deviations.
     `relative`: deviations are fractions of the design's value (0.01 is one per cent).
     """
 

@@ -83,7 +83,7 @@ class Function:
 
     @property
     def is_response(self) -> bool:
-        """Whether it is a frequency response: of type 4, 5 (transmissibility), or 0 with complex values as a function of frequency."""
+        """Whether the function is a frequency response: type 4, 5 (transmissibility), or 0 (complex, as a function of frequency)."""
         return self.kind in (RESPONSE, TRANSMISSIBILITY) or (self.kind == 0 and self.is_complex and self.abscissa.kind == _FREQUENCY_AXIS)
 
     @property
