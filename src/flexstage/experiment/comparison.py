@@ -187,7 +187,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
 
     Shapes are compared at the outputs common to record and stage by the modal assurance criterion (MAC, Allemang & Brown 1982). For
     measured shapes, the real part is used. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to
-    modes of the model so that the total MAC of all pairs is largest. Frequency differences have a small weight, which decides between
+    modes of the model so that the sum of the MACs of all pairs is largest. Frequency differences have a small weight, which decides between
     shapes that the sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5.
     Measured modes may also be paired with local modes of the model. If the permanent load is significant, the model describes the loaded
     stage (see `load_effect`). Raises `DesignError` without a common output.

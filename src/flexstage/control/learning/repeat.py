@@ -30,12 +30,12 @@ class Repeater:
     """Repetitive controller: the correction d follows from itself and the error e, one period P before, as d = z^-P (W d + L e).
 
     W is the low-pass filter of the `band`, with the taps `keep` (2m+1,). L is the inverse model of the loop times gain, filtered by W, with
-    the taps `teach` (2m+1, f, f). Both filters are noncausal by m samples. The taps of both filters include the fractional delay if the
-    `period` P [samples] is not a whole number. `contraction` is the largest singular value of W - G L over all frequencies, with rotations
-    scaled to lengths; G are the loop's responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors
-    decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, Journal of Dynamic Systems, Measurement, and Control 111
-    (1989) 353). `amplifies` is the largest amplification between the harmonics without mode shift: the largest singular value of (I + W z)
-    (I + (W - G L) z)^-1 over all frequencies and all z with |z| = 1.
+    the taps `teach` (2m+1, f, f). Both filters are noncausal: they also use the following m samples. The taps of both filters include the
+    fractional delay if the `period` P [samples] is not a whole number. `contraction` is the largest singular value of W - G L over all
+    frequencies, with rotations scaled to lengths; G are the loop's responses with shifted modes. With a contraction below 1 the loop is
+    stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, Journal of Dynamic Systems,
+    Measurement, and Control 111 (1989) 353). `amplifies` is the largest amplification between the harmonics without mode shift: the largest
+    singular value of (I + W z) (I + (W - G L) z)^-1 over all frequencies and all z with |z| = 1.
     """
 
     period: float

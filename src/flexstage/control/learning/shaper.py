@@ -50,7 +50,7 @@ def zv(frequency: float, damping: float) -> Shaper:
 def zvd(frequency: float, damping: float) -> Shaper:
     """Construct a zero-vibration-derivative (ZVD) shaper: impulses (1, 2K, K^2) / (1+K)^2, half a damped period apart.
 
-    K is defined as in `zv`. The residual vibration is quadratic in the frequency error.
+    K is defined as in `zv`. The residual vibration is proportional to the square of the frequency error.
 
     >>> zvd(50.0, 0.0).amplitudes.tolist()
     [0.25, 0.5, 0.25]

@@ -14,7 +14,7 @@ _REPEATED = 1e-3
 
 
 def reduce_modes(given: Plant, wanted: Array) -> Plant:
-    """Keep the modes marked in `wanted` (k,), and the strongest modes, as many as loop coordinates; residualise the other modes.
+    """Keep the modes marked in `wanted` (k,), and as many of the strongest modes as loop coordinates; residualise the others.
 
     Repeated modes are retained together. Omitted states x follow the inputs u statically, x = -A^-1 B u with the system matrices A and B,
     so that every static gain is preserved (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).

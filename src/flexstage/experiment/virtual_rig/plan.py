@@ -53,7 +53,7 @@ class Plan:
 
     `units` (p,) are the units of gauge readings. `rms` (m,) are rms values of the commanded `inputs`. `bandwidths` (m,) are the bandwidths
     of amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) standard deviations of their
-    drifts after one minute. `highest` is the highest platform mode [Hz].
+    drifts after one minute. `highest` is the frequency of the highest platform mode [Hz].
     """
 
     setup: RigSetup

@@ -31,8 +31,8 @@ def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: D
     converted to equivalent modal damping ratios, with a note in the record's name. Samples are computed on demand, in blocks; equal set-ups
     give equal samples.
 
-    Raises `DesignError` with all errors. Examples are an invalid duration, a rate below twice the highest platform mode, unknown actuators,
-    missing gauges, and peaks that exceed strokes, currents or gauge ranges.
+    Raises `DesignError` with all errors. Examples are an invalid duration, a rate below twice the frequency of the highest platform mode,
+    unknown actuators, missing gauges, and peaks that exceed strokes, currents or gauge ranges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -76,9 +76,9 @@ class Sensing(CheckedFields):
 class RigSetup(CheckedFields):
     """Virtual test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; readings are recorded `delay` [s] late.
 
-    A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear.
-    The default rate is the lowest power of two that is at least ten times the highest platform mode. Equal set-ups of equal stages give
-    bit-identical records. Without `input_quantity`, each recorded input is the actuator's input quantity: stroke, current or force.
+    A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear. The default rate is the lowest
+    power of two that is at least ten times the frequency of the highest platform mode. Equal set-ups of equal stages give bit-identical
+    records. Without `input_quantity`, each recorded input is the actuator's input quantity: stroke, current or force.
 
     >>> RigSetup(seconds=10.0).filter.order
     8

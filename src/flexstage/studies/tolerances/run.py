@@ -62,7 +62,7 @@ class Toleranced(StudyResult):
 
     @property
     def crosstalk(self) -> Annotated[tuple[Crosstalk, ...], VIEW]:
-        """Pose errors of the samples, with the nominal mapping for command and measurement."""
+        """Pose errors of the samples, if strokes are commanded, or poses measured, with the nominal mapping."""
         return self.summary.crosstalk
 
     def _response(self, column: int, name: str) -> ResponseSpread:

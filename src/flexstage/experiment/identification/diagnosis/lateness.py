@@ -73,8 +73,8 @@ def late_channels(found: Identified) -> Iterator[str]:
     """Find single channels whose delay differs from the other inputs or outputs, and yield a warning for each.
 
     The delay of each channel is estimated from its residues in three modes or more. A channel is reported if its delay differs from the
-    median by more than 6 standard deviations and by more than a tenth of the highest mode's period. Most channels must agree with the
-    median. A channel with a phase shift of half a turn in all modes has a wrong sign, not a delay.
+    median delay by more than 6 standard deviations and by more than a tenth of the highest mode's period. Most channels must agree with
+    this median. A channel with a phase shift of half a turn in all modes has a wrong sign, not a delay.
     """
     if len(_groups(found)) < _ENOUGH:
         return
