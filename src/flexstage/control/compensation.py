@@ -17,10 +17,10 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 @dataclass(frozen=True, eq=False)
 class Compensation:
-    """Open-loop compensation: the strokes for a commanded pose xi are a = `gains` xi + `offset`.
+    """Open-loop compensation: the strokes a for a commanded pose xi are a = `gains` xi + `offset`.
 
-    `gains` (n, f) map coordinates to strokes: R_a, or gains that correct lost motion. `offset` (n,) [m] are the strokes that balance the
-    loads. `provenance` names the model.
+    `gains` (n, f) map f pose coordinates to n strokes: the matrix R_a of the ideal kinematics, or gains that correct lost motion. `offset`
+    (n,) [m] are the strokes that balance the loads. `provenance` names the model.
     """
 
     gains: Matrix
@@ -33,7 +33,7 @@ class Compensation:
 
 
 def ideal_compensation(kinematics: Kinematics) -> Compensation:
-    """Compute the strokes of the ideal kinematics, a = R_a xi (Eq. 13 of Shin & Moon).
+    """Compute the strokes a = R_a xi for a pose xi with the matrix R_a of the ideal kinematics (Eq. 13 of Shin & Moon).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
@@ -46,10 +46,11 @@ def ideal_compensation(kinematics: Kinematics) -> Compensation:
 def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflection: Array | None = None) -> Compensation:
     """Compute gains that correct lost motion, and strokes that cancel the platform's `deflection` (6,) under loads.
 
-    a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon solved for the strokes, with its load term. C w is the `deflection`: the
-    twist of the platform's reference point with all strokes zero (`analysis.deflection`, or a static compliance times a wrench). Strokes
-    cannot cancel deflections outside the ideal motions. The computation is linear. Raises `DesignError` for a deflection without exactly 6
-    components.
+    The strokes a for a pose xi are a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon solved for the strokes, with its load term.
+    R_a maps poses to ideal strokes, V^+ projects twists onto the ideal motions, and T is the elastic twist per stroke. C w is the
+    `deflection`: the twist of the platform's reference point with all strokes zero (`analysis.deflection`, or the static compliance C times
+    a wrench w). Strokes cannot cancel deflections outside the ideal motions. The computation is linear. Raises `DesignError` for a
+    deflection without exactly 6 components.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -95,9 +96,10 @@ class StaticError(InNotebook):
 def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
     """Compute the static error of a compensation on a plant of any model.
 
-    E = I - V^+ T G, with the gains G. `plant` is the matrix T (6, n): the platform's twist per stroke (`lost_motion(...).gain`, or
-    `static_gain` of any model). For G = R_a, E equals R_a^+ Lambda R_a as in the lost-motion analysis. `deflection` (6,) is the plant's
-    deflection under the loads with fixed strokes. Raises `DesignError` if the plant has other actuators than the compensation.
+    The error is E = I - V^+ T G. G are the gains, V^+ projects twists onto the ideal motions, and `plant` is the matrix T (6, n): the
+    platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any model). For ideal gains G = R_a, E equals R_a^+ Lambda R_a
+    with the lost motion Lambda (`lost_motion(...).loss`). `deflection` (6,) is the plant's deflection under the loads with fixed strokes.
+    Raises `DesignError` if the plant has other actuators than the compensation.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle

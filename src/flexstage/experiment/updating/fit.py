@@ -27,7 +27,8 @@ class Problem(Generic[_State]):
 
     `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are (data -
     model)/deviation, where deviation is the standard deviation of the data. `slopes` (n, P) are the derivatives of the model with respect
-    to the parameters, divided by the same standard deviations. The prior covariance of the parameters is the identity.
+    to the parameters, divided by the same standard deviations. The parameters are in prior standard deviations, so that their prior
+    covariance is the unit matrix.
     """
 
     state: Callable[[Array, _State], _State]

@@ -19,11 +19,11 @@ from flexstage.mechanism.mechanism import Mechanism
 
 @dataclass(frozen=True)
 class Prior(CheckedFields):
-    """Priors of an update, as relative standard deviations, with default assumptions.
+    """Assumed errors of an update, as relative standard deviations: of the parameters before the test, of the model and of the gains.
 
-    `prior` applies to every free parameter, unless `priors` has a value for its address. `model_error` is the error of the model's
-    frequencies that remains with the best parameters. `gain_error` is the error of static gains, due to the model and to the scales of
-    gauges and drives. If `gain_error` is `None`, static gains are not used.
+    `prior` is the standard deviation of every free parameter, unless `priors` has a value for its address. `model_error` is the error of
+    the model's frequencies that remains with the best parameters. `gain_error` is the error of static gains, due to the model and to the
+    scales of gauges and drives. If `gain_error` is `None`, static gains are not used.
     """
 
     prior: float = 0.1

@@ -25,9 +25,9 @@ from flexstage.models.lumped import lumped
 class ModeRow:
     """Row of data: one mode, or a group of repeated modes, of the model and of the test.
 
-    `modes` are the model's modes, counted from 0 over all modes of the model. `frequency` [Hz] is the square root of the mean of f^2 over
-    the `measured` modes. The mean of f^2 is symmetric in repeated modes and therefore smooth in every parameter. `deviation` is the
-    relative standard deviation of the frequency.
+    `modes` are the numbers (from 0) of the row's modes among all modes of the model. `frequency` [Hz] is the square root of the mean
+    squared frequency of the `measured` modes. This mean does not depend on the sequence of repeated modes, and is therefore a smooth
+    function of every parameter. `deviation` is the relative standard deviation of the frequency.
     """
 
     name: str
@@ -89,7 +89,7 @@ def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
 
 
 def follow_modes(before: Design, mechanism: Mechanism) -> Design:
-    """Solve the modes of a changed `mechanism`. Each row gets the modes that are most similar to its modes in the design `before`.
+    """Compute the modes of a changed `mechanism`. Each row gets the modes that are most similar to its modes in the design `before`.
 
     Similarity is measured with the mass matrix M of the previous design; all rows are assigned together. Modes whose frequencies cross
     therefore keep their rows.
@@ -116,7 +116,10 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
 
 
 def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
-    """Compute the exact derivatives d ln f / d p (rows, P): sum of phi^T (dK - lambda dM) phi over 2 sum of lambda, over each row's modes.
+    """Compute the exact derivatives d ln f / d p (rows, P) of each row's frequency f with respect to the parameters p.
+
+    The derivative is the sum of phi^T (dK - lambda dM) phi over the row's modes, divided by twice the sum of their eigenvalues lambda. phi
+    are the mode shapes, dK and dM the derivatives of stiffness and mass matrix.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
@@ -140,7 +143,7 @@ def static_gains(design: Design, gains: Gains) -> Array:
 
 
 def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
-    """Compute the derivatives (p, m, P) of the model's static gains by the parameters at addresses `names`."""
+    """Compute the derivatives (p, m, P) of the model's static gains with respect to the parameters at the addresses `names`."""
     result = np.zeros((*gains.values.shape, len(names)))
     for chunk, model in _complex_steps(design, names):
         moved = slope(static_gain(model, gains.outputs, gains.inputs).values)

@@ -100,9 +100,10 @@ class Residual:
 
 @dataclass(frozen=True)
 class UpdatedNumber:
-    """Values of an updated parameter before and after, in SI. `change` is relative; deviations are standard deviations of the logarithm.
+    """Values of an updated parameter before and after the update, in SI units, and standard deviations of its logarithm.
 
-    `prior_variance_left` is the fraction of the prior variance that remains; `identifiability` and `verdict` follow from it.
+    `change` is relative. `prior_variance_left` is the fraction of the prior variance that remains; `identifiability` and `verdict` follow
+    from it.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -152,7 +153,7 @@ class Combination:
 
     @property
     def combination(self) -> str:
-        """String that lists the components above 0.05, for tables."""
+        """Text for tables that lists the parameters whose components exceed 0.05 in magnitude."""
         return ", ".join(f"{part:+.2f} {name}" for name, part in self.direction.items() if abs(part) > 0.05)
 
     @property
@@ -165,12 +166,13 @@ class Combination:
 class Updated(InNotebook):
     """Result of an update: parameters before and after the update, in SI, with standard deviations of their logarithms.
 
-    A small standard deviation of a logarithm equals the relative standard deviation of the value. `addresses` (P) are full addresses.
-    `prior` (P,) are prior standard deviations and `covariance` (P, P) is the posterior covariance of the logarithms. The columns of
-    `directions` (P, P) are combinations of parameters, in units of prior standard deviations, best identified first. Of the prior variance
-    of a combination with the singular value s in `singular` (P,), the fraction 1/(1 + s^2) remains. `chi_square` is the sum of squared
-    residuals of data and priors after the update; `freedoms` is the number of data. `chi_square_before` is the sum for the data before the
-    update. `mechanism` is the updated description. `data_warnings` lists the reasons why results may be unreliable.
+    A small standard deviation of a logarithm equals the relative standard deviation of the value. `addresses` (P,) are the full addresses
+    of the P parameters. `prior` (P,) are prior standard deviations and `covariance` (P, P) is the posterior covariance of the logarithms.
+    The columns of `directions` (P, P) are combinations of parameters, in units of prior standard deviations, best identified first. Of the
+    prior variance of a combination with the singular value s in `singular` (P,), the fraction 1/(1 + s^2) remains. `chi_square` is the sum
+    of squared residuals of data and priors after the update; `freedoms` is the number of data. `chi_square_before` is the sum of squared
+    residuals of the data before the update. `mechanism` is the updated description. `data_warnings` lists the reasons why results may be
+    unreliable.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]
@@ -235,7 +237,7 @@ class Updated(InNotebook):
 
     @property
     def identifiability(self) -> tuple[Identifiability, ...]:
-        """Identifiability of each parameter; withheld if data differ from the model by more than three standard deviations on average."""
+        """Identifiability of each parameter; withheld if chi-squared exceeds ten times the number of data, unless not identifiable."""
         grades = Identifiability
         known = (
             grades.WELL if share <= _IDENTIFIED else grades.WEAKLY if share <= _HARDLY else grades.NOT for share in self.remaining_variance
@@ -283,13 +285,16 @@ class Updated(InNotebook):
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Prior = DEFAULT) -> Updated:
     """Update the parameters at the addresses `names` so that the lumped model agrees best with a test; `known` are their priors.
 
-    The method is Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8).
-    Gauss-Newton steps, with exact derivatives by complex step, minimise sum ((d - g(x))/sigma)^2 + sum (x/sigma_p)^2. The posterior
-    covariance is (J^T W J + S^-1)^-1.
+    The method is Bayesian least squares in the logarithms x = ln(p/p0) of the parameters p relative to their initial values p0 (Tarantola
+    2005, ch. 3; Friswell & Mottershead 1995, ch. 8). Gauss-Newton steps, with exact derivatives by complex step, minimise sum ((d -
+    g(x))/sigma)^2 over the data d plus sum (x/sigma_p)^2 over the parameters. g(x) are the model's values, sigma and sigma_p the standard
+    deviations of data and priors. The posterior covariance is (J^T W J + S^-1)^-1 with the derivatives J of g, the weights W =
+    diag(1/sigma^2) and the prior covariance S = diag(sigma_p^2).
 
-    The data d are ln f of the modes, paired as in `compare`; for repeated modes, f is the root of their mean f^2. The standard deviations
-    sigma of the data include the identified standard deviations and the model error. With a `gain_error`, static gains are also data.
-    Intervals are valid if frequencies are nearly linear in the logarithms x within the intervals.
+    The data d are the logarithms of the modes' frequencies, paired as in `compare`; for repeated modes, the square root of their mean
+    squared frequency is used. The standard deviations sigma of the data include the identified standard deviations and the model error.
+    With a `gain_error`, static gains are also data. Intervals are valid if frequencies are nearly linear in the logarithms x within the
+    intervals.
 
     Raises `DesignError` for parameters that are unknown, ambiguous, zero or without effect, for fewer data than parameters, for a record
     without the stage's gauges, and if the iteration does not converge.

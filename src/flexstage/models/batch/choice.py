@@ -38,7 +38,7 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class ModeSelection:
-    """Selected modes of b designs: `mask` (b, k) of the platform modes; `exact` (b,) is true if the number of modes is as requested.
+    """Selected modes of b designs: `mask` (b, k) marks the platform modes; `exact` (b,) is true if their number is as requested.
 
     If only some modes of a cluster are platform modes, the modes with the largest participation are selected.
     """
@@ -80,11 +80,11 @@ def compliance_root(model: LinearModel, rows: Array) -> Array:
 
 
 def participation(root: Array, motions: Array, values: Array) -> Array:
-    """Compute the modal participation C^-1/2 phi / omega (..., 6, k) in the compliance C = R^T R, with the `root` R (..., r, 6).
+    """Compute the participation p = C^-1/2 phi / omega (..., 6, k) of k modes in the compliance C = R^T R; `root` is R (..., r, 6).
 
-    `motions` (..., 6, k) are the platform twists phi, `values` (..., k) the eigenvalues omega^2. The squared length of column p is the
-    fraction of the compliance that the mode contributes in its own direction. Over all modes, the products p p^T add up to the unit matrix.
-    Directions without compliance are excluded.
+    `motions` (..., 6, k) are the platform twists phi, `values` (..., k) the eigenvalues omega^2. The squared length of a mode's column p is
+    the fraction of the compliance that the mode contributes in its own direction. Over all modes, the products p p^T add up to the unit
+    matrix. Directions without compliance are excluded.
 
     >>> participation(np.diag([0.5] * 6), np.eye(6), np.full(6, 4.0)).diagonal().tolist()  # springs of 4 N/m, masses of 1 kg
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]

@@ -17,7 +17,7 @@ _SINGULAR = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class AllModes:
-    """All modes of one design: `values` lambda (k,) and `shapes` (n, k); empty if K is singular.
+    """All modes of one design: eigenvalues `values` (k,) and `shapes` (n, k); empty if the stiffness matrix is singular.
 
     `parts` (6, k) is the participation of the modes in the platform compliance. Repeated modes are sorted by decreasing participation.
     """

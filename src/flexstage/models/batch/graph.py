@@ -49,13 +49,13 @@ class Topology:
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """Number of arrays of each kind."""
+        """Number of arrays of each kind in `SHAPES`."""
         owners = (self.parts, self.parts, len(self.links), len(self.links), len(self.links), len(self.bodies))
         return dict(zip(SHAPES, owners, strict=True))
 
     @cached_property
     def starts(self) -> Mapping[str, int]:
-        """Offset of each kind in the array of all numbers."""
+        """Offset of each kind in `SHAPES` in the array of all numbers."""
         sizes = [count * int(np.prod(SHAPES[kind])) for kind, count in self.counts.items()]
         return dict(zip(SHAPES, np.cumsum([0, *sizes[:-1]]).tolist(), strict=True))
 
@@ -104,9 +104,10 @@ def topology(assembly: Assembly) -> Topology:
 
 @dataclass(frozen=True)
 class Elimination:
-    """Elimination order of bodies, with the kept body last. `edges` are the pairs (first, later) of the filled graph, sorted by first node.
+    """Elimination order of bodies, with the kept body last.
 
-    The numbers in `edges` are positions in the elimination order.
+    `edges` are the pairs of bodies that the graph, filled by the elimination, joins: the body eliminated first, then the other. The numbers
+    in `edges`, which are sorted, are positions in the elimination order.
     """
 
     order: tuple[int, ...]

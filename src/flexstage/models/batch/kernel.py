@@ -75,7 +75,7 @@ def kernel_name() -> str:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Start values of the iteration: inertial forces (6 bodies, m) of m nominal modes, and a `shift` between two eigenvalues.
+    """Start values of the iteration: inertial forces (six for each body, m) of m nominal modes, and a `shift` between two eigenvalues.
 
     The first `needed` modes are computed one by one.
     """

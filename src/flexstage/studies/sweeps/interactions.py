@@ -22,8 +22,9 @@ class Interaction:
     """Interaction of two variables: means of a response as a function of the first, for low, middle and high values of the second.
 
     `over`, `by` and `response` are the indices of both variables and of the response. `share` is the fraction of the response's variance
-    that only both variables together explain. `places` (b,) and `levels` (3,) are mean values of the variables in SI. `means` (3, b) are
-    the means of the response; they are NaN for combinations without a design.
+    that only both variables together explain. `places` (b,) are mean values of the first variable in b bins, `levels` (3,) those of the
+    second variable at its three levels, in SI. `means` (3, b) are the means of the response; they are NaN for combinations without a
+    design.
     """
 
     over: int
@@ -39,10 +40,11 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
     """Compute fractions (d, d, r) of the variance of responses (n, r) that two variables `at` (n, d) explain only together.
 
     The method is analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and
-    subtracted. The cells formed by the bins of two variables then explain a sum of squares SS_ij of the residual. The fraction is SS_ij
-    divided by the total sum of squares. Without a `grid`, (b_i - 1)(b_j - 1) MSE is first subtracted, the expected value of SS_ij without
-    interaction. For a complete grid, the fraction is exact. Without a grid, effects within bins are missing, and true fractions are larger.
-    The result is NaN on the diagonal, for too few designs, and for a constant response.
+    subtracted. The cells formed by the bins of two variables i and j then explain a sum of squares SS_ij of the residual. The fraction is
+    SS_ij divided by the total sum of squares. Without a `grid`, the expected value of SS_ij without interaction is first subtracted: (b_i -
+    1)(b_j - 1) MSE, with the numbers of bins b_i and b_j and the mean square MSE of the rest of the residual. For a complete grid, the
+    fraction is exact. Without a grid, effects within bins are missing, and true fractions are larger. The result is NaN on the diagonal,
+    for too few designs, and for a constant response.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
@@ -91,9 +93,10 @@ def rank_bins(column: Array, count: int) -> Array:
 
 
 def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
-    """Estimate the effect (b, r) of each bin of a variable on responses (n, r), relative to the mean response; `bins` are arrays (n,).
+    """Estimate the effect (b, r) of each bin of a variable on responses (n, r), relative to the mean response.
 
-    One least-squares problem for all variables separates their effects, even for few designs. Empty bins have effect 0.
+    `bins` contains, for each variable, the number of the bin of each of the n designs. One least-squares problem for all variables
+    separates their effects, even for few designs. Empty bins have effect 0.
 
     >>> bins = [np.array([0, 0, 0, 1]), np.array([0, 0, 1, 1])]
     >>> [each[1] - each[0] for each in single_effects(bins, np.array([[1.0], [1.0], [3.0], [3.0]]))][0].round(9).tolist()
@@ -124,9 +127,10 @@ def _explained_sum(first: Array, second: Array, residual: Array) -> Array:
 def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
     """Compute second-order Sobol indices (d, d, r) and their largest standard error (r,) from blocks (2 d + 2, n, r) of Saltelli's plan.
 
-    The index S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j follows from products of designs that have only x_i and x_j in common. These
-    designs are A with column j of B, and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean is
-    subtracted first, and the results for (i, j) and (j, i) are averaged. Standard errors assume independent rows; the errors of a Sobol
+    The second-order index of two variables x_i and x_j for a response y is S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j, with their
+    first-order indices S_i and S_j. It follows from products of the responses of two designs that have only x_i and x_j in common. These
+    designs are A with column j of B, and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean response
+    is subtracted first, and the results for (i, j) and (j, i) are averaged. Standard errors assume independent rows; the errors of a Sobol
     sequence are smaller.
 
     >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response

@@ -24,7 +24,7 @@ class Sampling(Enum):
 
 @dataclass(frozen=True)
 class Plan:
-    """A sampling of `count` designs with its `seed`. A grid has `levels` instead of a count: one number for each variable.
+    """A sampling of `count` designs with its `seed`. A grid has `levels` instead of a count: the number of values of each variable.
 
     Saltelli's plan contains two Sobol samples A and B of `count` designs each. For each of d variables, the plan also contains A with this
     variable's column from B. Saltelli's plan therefore has count (d + 2) designs, for Sobol indices (Saltelli et al., Computer Physics
@@ -41,7 +41,7 @@ class Plan:
 
     @property
     def blocks(self) -> int:
-        """Number of samples of Saltelli's plan.
+        """Number of samples, each of `count` designs, in Saltelli's plan.
 
         >>> Plan(Sampling.SALTELLI, 3, count=8).blocks, Plan(Sampling.SALTELLI, 3, count=8, pairs=True).blocks
         (5, 8)

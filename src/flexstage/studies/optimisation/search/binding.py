@@ -20,9 +20,9 @@ _EDGE = 1e-7
 def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, ...]:
     """Find the binding limits and range ends of an optimum, sorted by the effect of a relative change of the limit or range.
 
-    The multipliers come from a convex model with unit curvature around the optimum; the minimum of this model is the optimum itself. For
-    min c_0 with c_i <= e_i, the multipliers are the derivatives -d c_0 / d e_i. Because they are derivatives, multipliers are valid for
-    small changes; for repeated modes they are one-sided.
+    The multipliers come from a convex model with unit curvature around the optimum; the minimum of this model is the optimum itself. If the
+    minimum of the objective c_0 is sought under limits c_i <= e_i, the multiplier of limit i is the derivative -d c_0 / d e_i of this
+    minimum. Because they are derivatives, multipliers are valid for small changes; for repeated modes they are one-sided.
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))

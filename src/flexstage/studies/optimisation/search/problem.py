@@ -38,13 +38,13 @@ class Side:
         return -spare if self.sense is Sense.AT_LEAST else spare
 
     def at(self, point: Point) -> float:
-        """Compute c for a design."""
+        """Compute the constraint value c of a design."""
         return self.of(point.found[self.index].value)
 
 
 @dataclass(frozen=True)
 class Problem:
-    """Minimise the largest c of `objective` with all c of `limits` <= 0."""
+    """Minimise the largest constraint value c of the sides in `objective`; no side in `limits` may have c > 0."""
 
     objective: tuple[Side, ...]
     limits: tuple[Side, ...]
@@ -64,9 +64,10 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Linear model of a side: after a change d of the design, c is the largest eigenvalue of constant (k, k) + sum_p d_p slope_p (n, k, k).
+    """Linear model of a side: after a change d of the n variables, c is the largest eigenvalue of a matrix of k modes.
 
-    For scalars, the matrices are diagonal, and only their diagonals (m,) and (n, m) are stored.
+    This matrix is `constant` (k, k) plus the sum of d_p times the matrix p of `slope` (n, k, k) over all variables p. For m scalar values,
+    the matrices are diagonal, and only their diagonals (m,) and (n, m) are stored.
     """
 
     constant: Array
@@ -78,7 +79,7 @@ class Linear:
         return self.constant.ndim == 1
 
     def project(self, vector: Array) -> tuple[float, Array]:
-        """Return constant and gradient (n,) of v^T C v, with the model's matrix C. For a unit vector v, v^T C v is at most c."""
+        """Return constant and gradient (n,) of v^T C v for a vector v and the model's matrix C; for a unit vector, it is at most c."""
         return float(vector @ self.constant @ vector), np.einsum("i,pij,j->p", vector, self.slope, vector)
 
     def after(self, change: Array) -> tuple[Array, Array]:

@@ -21,9 +21,11 @@ _ROOM = 6
 class Spectrum:
     """k modes of one design: ascending `frequencies` (k,) [Hz] and their `slopes` (n, k, k) [Hz per unit of each variable].
 
-    To first order, the frequencies after a small change d are the eigenvalues of diag(f) + sum_p d_p slopes_p, for distinct, repeated or
-    crossing modes. The entries are slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N,
-    k) and `weighted` = M shapes are used to pair the modes of two designs.
+    To first order, the frequencies after a small change d of the n variables are the eigenvalues of diag(f) plus the sum of d_p slopes_p
+    over the variables p, for distinct, repeated or crossing modes. The entries are slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM)
+    phi_j / (2 pi (omega_i + omega_j)). Here f are the `frequencies`, phi the mode shapes, lambda = omega^2 the eigenvalues, and dK and dM
+    the derivatives of stiffness and mass matrix. `shapes` (N, k) and `weighted`, the mass matrix times `shapes`, are used to pair the modes
+    of two designs.
     """
 
     frequencies: Array
@@ -41,7 +43,7 @@ class Modes:
 
 
 def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
-    """Compute the spectra of s designs; the batch (s n,) of the model contains each design n times.
+    """Compute the spectra of s designs with n variables; the batch (s n,) of the model contains each design n times.
 
     Each copy has a tiny imaginary step in a different variable. `shape` contains the numbers s and n. With n = 0, the batch (s,) is real,
     and there are no slopes. Raises `DesignError` if the stage has too few modes.

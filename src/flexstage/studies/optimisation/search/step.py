@@ -22,7 +22,8 @@ _SAME = 9
 class Step:
     """Result of one step: the `change` (n,) of the design in fractions of the ranges, and the multipliers `weights` of all sides.
 
-    In the model, `gain` is the improvement of the merit function, and `excess` the remaining violation of limits.
+    `gain` is the model's improvement of the merit function (objective plus `penalty` times violation); `excess` is the violation of limits
+    that remains in the model.
     """
 
     change: Array
@@ -59,12 +60,12 @@ class Bounds:
 
 
 def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: Point | None = None) -> Step:
-    """Minimise t + d^T B d / 2 + penalty s over all changes d within the radius and the ranges.
+    """Minimise t + d^T B d / 2 + penalty s over all design changes d within the radius and the ranges; B is the `hessian`.
 
-    To first order, t is an upper bound of all sides of the objective, and s >= 0 is an upper bound of all limits. Sides of frequencies are
-    matrices. Eigenvectors of the changed matrices are added as planes until no eigenvalue exceeds t (objective) or s (limits). This method
-    of planes is exact even for crossing modes. With `tried`, the planes are shifted so that they match the values of this design. Without
-    such shifts (second-order correction), the steps along curved limits would be short.
+    To first order, t is an upper bound of the objective's increase, and s >= 0 is an upper bound of the violation of every limit. Sides of
+    frequencies are matrices. Eigenvectors of the changed matrices are added as planes until no eigenvalue exceeds the bound set by t
+    (objective) or s (limits). This method of planes is exact even for crossing modes. With `tried`, the planes are shifted so that they
+    match the values of this design. Without such shifts (second-order correction), the steps along curved limits would be short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting
