@@ -54,7 +54,7 @@ _TOGETHER = 3
 
 
 class StageResults:
-    """Models and results of one stage, computed on first use. `command` is the box of required strokes."""
+    """Models and results of one stage, computed on first use. `command` contains the required stroke of each coordinate."""
 
     def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
         self.mechanism = mechanism
@@ -89,7 +89,7 @@ class StageResults:
             bench._points[name, at] = each  # noqa: SLF001
 
     def one(self, place: int, share: float) -> StageResults:
-        """Results of one design of a batch, with `share` times its imaginary parts added. Recent results are cached."""
+        """Results of one design of a batch, with `share` times the imaginary parts of its numbers added. Recent results are cached."""
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()
@@ -97,7 +97,7 @@ class StageResults:
         return self._ones[place, share]
 
     def over(self, name: str) -> StageResults:
-        """Bench of models linearised about all points of a path, as a batch."""
+        """Results of the stage linearised about all points of a path, as a batch."""
         if name not in self._along:
             result = course(self.mechanism, name)
             states = result.path(self.nonlinear, result.rest(self.nonlinear)).state
@@ -206,7 +206,7 @@ class StageResults:
 
     @cached_property
     def stress_at_strokes(self) -> HingeStress:
-        """Stress of hinges over the box of required strokes; hinges are stress-free at zero voltage."""
+        """Stress of hinges over all combinations of required strokes; hinges are stress-free at zero voltage."""
         box = self._driven_box()
         start = np.zeros(len(self.limits.actuators)) if self.limits.zero is None else -self.limits.zero
         mapping = self.per_motion
@@ -266,7 +266,7 @@ class StageResults:
 
     @cached_property
     def size(self) -> Array:
-        """Edges of the bounding box (..., 3) [m]."""
+        """Edge lengths (..., 3) [m] of the box around the stage."""
         low, high, _ = bounds(outlines(self.assembly))
         return high - low
 
@@ -285,7 +285,7 @@ class StageResults:
         return position - self.assembly.bodies[PLATFORM].reference
 
     def box(self) -> Mapping[str, float]:
-        """Box of all required strokes."""
+        """Required stroke of each coordinate."""
         if not self.command:
             raise refuse("requirements", "required strokes missing", 'Add e.g. "stroke.x" = "at least 50 um"')
         return self.command

@@ -56,10 +56,10 @@ def geometric(part: Part, material: Material | None) -> Geometric:
 
 
 def foreshortening(part: Part, material: Material | None) -> Array:
-    """Compute the foreshortening matrices G (6, 6, 6): a relative twist e at the centre gives the second-order deformation 1/2 e^T G e.
+    """Compute the foreshortening matrices G (6, 6, 6): a relative twist e of the ends causes the second-order deformations 1/2 e^T G_i e.
 
-    The deformation is due to bending and twist; the axial stretch is neglected. The geometric stiffness under the wrench w is the geometric
-    stiffness K_g of a bushing plus sum w_i G_i. G is zero for parts without length.
+    The twist is taken at the centre. The deformation is due to bending and twist; the axial stretch is neglected. The geometric stiffness
+    under the wrench w is that of a bushing plus the sum of w_i G_i over the components i. G is zero for parts without length.
     """
     own, axis = geometric(part, material), np.eye(3)[0]
     result = own.per_force[..., 6:ENDS, 6:ENDS] - _of_point().per_force[:, 6:, 6:]

@@ -13,10 +13,10 @@ HIGHEST = {"notch": 0.8, "fillet": 1.0, "toroid": 0.5}
 
 
 def concentration(profile: Profile, thickness: Number) -> Number | None:
-    """Compute the notch factor in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), with the throat radius R.
+    """Compute the notch factor in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), with thickness t and radius R at the throat.
 
-    R is a^2/c for an ellipse, and the fillet radius for a corner-filleted hinge. A straight hinge has K_t = 1, because its corners are not
-    specified.
+    R is a^2/c for an ellipse with the semi-axes a along and c across the hinge, and the fillet radius for a corner-filleted hinge. A
+    straight hinge has K_t = 1, because its corners are not specified.
 
     Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere), are:
 

@@ -145,7 +145,7 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Suspec
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
-    """Estimate the scale (p,) of every output: its `measured` amplitudes (p, groups) relative to those of the model.
+    """Estimate the scale (p,) of every output: its `measured` amplitudes (p, groups of modes) relative to `theory`, those of the model.
 
     The median of the scales is 1. The amplitudes of each group of modes may have another scale, which does not affect the result.
 

@@ -44,11 +44,12 @@ class StageShapes:
 
 
 def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
-    """Fit ideal stage motions to the measured shapes s by least squares: x = V (R V)^+ s.
+    """Fit ideal stage motions to the measured shapes s by least squares: the platform twists are x = V (R V)^+ s.
 
-    The columns of V are the ideal motions. Each row of R is a gauge's row of R_s, or a component of a body's twist. Rotations are weighted
-    by the kinematics' characteristic length. For six gauges the result equals R_s^-1 s (Eq. 14 of Shin & Moon). All bodies move with the
-    ideal kinematics: hinges are free about their intended axes.
+    The columns of V are the ideal motions, and (R V)^+ is the pseudo-inverse. Each row of R maps the platform twist to an output: a gauge's
+    reading by its row of the matrix R_s, or a component of a body's twist. Rotations are weighted by the kinematics' characteristic length.
+    For six gauges the result equals R_s^-1 s (Eq. 14 of Shin & Moon). All bodies move with the ideal kinematics: hinges are free about
+    their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

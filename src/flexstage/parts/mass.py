@@ -73,7 +73,9 @@ def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = No
 
 
 def of_moments(density: Number, moments: Moments) -> MassProperties:
-    """Compute mass properties of a region of uniform density [kg/m^3] from its moments: J = rho (tr S I - S) about its centre.
+    """Compute mass properties of a region of uniform density [kg/m^3] from its moments.
+
+    The inertia tensor about the centre is J = rho (tr S I - S), with the density rho, the second moments S and the unit matrix I.
 
     >>> of_moments(3.0, Moments(np.array(2.0), np.zeros(3), np.eye(3))).inertia.diagonal().tolist()
     [6.0, 6.0, 6.0]
@@ -118,7 +120,7 @@ def _about(second: Array) -> Array:
 
 
 def tensor(inertia: Inertia) -> Array:
-    """Return the 3x3 inertia tensor of moments and products.
+    """Return the 3x3 inertia tensor from the moments and products of inertia.
 
     >>> tensor(Inertia(xx=1.0, yy=2.0, zz=3.0, xy=0.5)).tolist()
     [[1.0, -0.5, -0.0], [-0.5, 2.0, -0.0], [-0.0, -0.0, 3.0]]
@@ -146,7 +148,7 @@ def solid_properties(solid: Solid, density: Number) -> MassProperties:
 
 
 def within(properties: MassProperties, frame: Frame) -> MassProperties:
-    """Transform mass properties to the parent frame of `frame`: J' = R J R^T.
+    """Transform mass properties to the parent frame of `frame`, whose rotation R changes the inertia tensor J to R J R^T.
 
     >>> point = MassProperties(np.array(1.0), np.array([1.0, 0.0, 0.0]), np.diag([0.0, 1.0, 2.0]))
     >>> quarter = Frame(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.zeros(3))

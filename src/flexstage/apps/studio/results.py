@@ -278,7 +278,7 @@ def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
 
 
 def strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
-    """Return the fraction (k,) of the strain energy of shapes (n, k) in every link."""
+    """Return, for every link, its fraction (k,) of the strain energy in each of k shapes (n, k)."""
     parts = {
         name: np.einsum("ik,ij,jk->k", each, model.stiffness[name].law, each) for name, each in part_deformation(model, shapes).items()
     }

@@ -19,10 +19,10 @@ from flexstage.show.viewer.bend import COLUMNS, Bend
 class Mesh:
     """Vertices, triangles and edges of a stage in its frame.
 
-    `points` (v, 3) [m] are the positions of vertices. `part`, `carrier` and `station` (v,) contain indices for each vertex. A carrier is a
-    piece between two bodies: `bodies` (c, 2) are their numbers (0: ground), `ends` (c, 2, 3) [m] are the ends of the piece at these bodies.
-    A rigid piece has the same body at both ends. The rows of `stations` (s, 5) are values of a `Bend`. `triangles` (t, 3) are
-    counter-clockwise from outside; `edges` (e, 2) are sharp edges.
+    `points` (v, 3) [m] are the positions of vertices. `part`, `carrier` and `station` (v,) are the indices of each vertex's part, carrier
+    and row of `stations`. A carrier is a piece between two bodies: `bodies` (c, 2) are their numbers (0: ground), `ends` (c, 2, 3) [m] are
+    the ends of the piece at these bodies. A rigid piece has the same body at both ends. The rows of `stations` (s, 5) are values of a
+    `Bend`. `triangles` (t, 3) are counter-clockwise from outside; `edges` (e, 2) are sharp edges.
     """
 
     points: Array
@@ -51,8 +51,8 @@ class Mesh:
     def displacement(self, twists: Array) -> Array:
         """Compute the displacement (v, 3) of the vertices for small twists (b, 6) of the bodies at the origin.
 
-        For a twist (t, w), a point p of a body moves by t + w x p. A link moves with its first body, and bends (see `Bend`) due to the
-        motion of the second body relative to the first. The viewer's shader computes the same displacement.
+        For a twist of translation t and rotation w, a point p of a body moves by t + w x p. A link moves with its first body, and bends
+        (see `Bend`) due to the motion of the second body relative to the first. The viewer's shader computes the same displacement.
         """
         first, second = (twists[self.bodies[self.carrier, side]] for side in (0, 1))
         rigid = first[:, :3] + np.cross(first[:, 3:], self.points)

@@ -63,7 +63,7 @@ class Response:
     """Small motion of a stage over time, as the sum of `weights` times `basis`.
 
     `basis` (n, b, 6) are the twists of all bodies at the stage's origin, for a unit of each of n coordinates. `weights` (f, n) are the
-    coordinates at equal steps of time. `curves` are quantities over time; the first is the time.
+    coordinates at f equally spaced times. `curves` are quantities over time; the first is the time.
     """
 
     basis: Array

@@ -109,7 +109,7 @@ class Rounded:
 
 @dataclass(frozen=True)
 class LimitAt:
-    """A limit, the value [SI] of a design, and the relative margin."""
+    """A limit on a measure, the value [SI] of this measure for a design, and the relative margin."""
 
     measure: str
     point: str
@@ -140,8 +140,8 @@ class RoundedPoint(DesignPoint):
 class Contradiction:
     """Minimal set of limits that contradict each other within the ranges.
 
-    `violation` is the minimum, over all designs, of the largest relative violation. `point` is the design at this minimum; it violates each
-    limit in `limits` by at most `violation`.
+    `violation` is the minimum, over all designs, of the largest relative violation of these limits. `point` is the design at this minimum;
+    it violates each limit in `limits` by at most `violation`.
     """
 
     limits: tuple[Requirement, ...]

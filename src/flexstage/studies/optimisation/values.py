@@ -89,7 +89,7 @@ class Values:
 
     Derivatives are exact: by a complex step through the formulas of the models, analytical for eigenvalues. Exceptions are `map_error` and
     `opening`, whose corners and outlines are computed in real numbers only. The derivatives of `map_error` and `opening` are central
-    differences. A step of a thousandth of the range makes the effects of rounding and curvature equal.
+    differences. Their step is a thousandth of the range, for which the effects of rounding and curvature are similar.
     """
 
     study: Study

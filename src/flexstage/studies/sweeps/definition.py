@@ -118,7 +118,7 @@ class Study:
         return self.mechanism_at(tuple(values[..., number] for number in range(len(self.variables))))
 
     def mechanism_at(self, columns: tuple[Number, ...]) -> Mechanism:
-        """Build the design with values (...) of each variable in `columns`, real or complex.
+        """Build the design from `columns`, the real or complex values (...) of each variable.
 
         Only numbers of the design that depend on a complex value become complex.
 
@@ -138,7 +138,7 @@ class Study:
         return None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
-        """Compute the measures `names`, by default all columns, of a design or a batch (...). A missing value is replaced by its reason.
+        """Compute the measures named in `names` (default: all columns) of a design or a batch. A missing value is replaced by its reason.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> round(float(neck_study().evaluate(neck_study().design)[0]))

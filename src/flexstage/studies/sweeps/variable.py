@@ -111,7 +111,7 @@ def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) ->
 
 
 def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
-    """Build the design with values (...) of each variable in `columns`. Only complex values make numbers of the design complex.
+    """Build the design from `columns`, the values (...) of each variable. Only complex values make numbers of the design complex.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -20,10 +20,10 @@ LARGEST = number(Precision.DOUBLE.largest)
 def controller_code(given: Machine, name: str = "controller", about: str = "") -> Program:
     """Generate the part of a loop that a computer executes: pose, error, controller, inverse hysteresis, converter, limits, voltages.
 
-    Inputs are `reference.<c>` and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`, `command`, `asked`, `given`,
-    `status` and, if the stacks' ranges are known, `volts`. The strokes `asked` (before the limits) and `given` (applied) are in m from the
-    bias. The integrators use the applied strokes (anti-windup). The last valid value (initially zero) replaces a non-finite reading or
-    reference and a reading beyond the gauge's range; `status` reports this. All states of the program stay finite.
+    Inputs are `reference.<c>` for each coordinate c, and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`,
+    `command`, `asked`, `given`, `status` and, if the stacks' ranges are known, `volts`. The strokes `asked` (before the limits) and `given`
+    (applied) are in m from the bias. The integrators use the applied strokes (anti-windup). The last valid value (initially zero) replaces
+    a non-finite reading or reference and a reading beyond the gauge's range; `status` reports this. All states of the program stay finite.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -122,7 +122,7 @@ def has_volts(given: Machine) -> bool:
 
 
 def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
-    """Return the state variables: states of the law, last applied strokes, last valid inputs, and plays of the inverse model."""
+    """Return the state variables: states of the controller, last applied strokes, last valid inputs, and plays of the inverse model."""
     model = given.compensation
     plays = () if model is None else (hysteresis_step("model", model, given.amplifiers.bias)[1],)
     taken = ("last", len(given.actuators)), ("seen", len(given.gauges)), ("wanted", len(given.names))

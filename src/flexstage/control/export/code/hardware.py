@@ -51,9 +51,9 @@ def hardware_code(
 
     The gains of PI and PID loops are adjustable. Any other controller has modal form with fixed gains. `tested` is a simulation of the
     loop: the generated test replays its reference and readings and compares the strokes. The step uses no library call and no heap. Sums
-    have a fixed order, rounding is to nearest, contraction is off, subnormals are kept. Finite inputs therefore give the same bits on every
-    IEEE 754 processor. With `legs`, a second function, `<name>_damp`, computes the sampled force feedback, and the test also replays the
-    leg tensions. Raises `DesignError` for an inverse hysteresis, which is not supported in this form.
+    have a fixed order, rounding is to nearest, multiplications and additions are not fused, subnormals are kept. Finite inputs therefore
+    give the same bits on every IEEE 754 processor. With `legs`, a second function, `<name>_damp`, computes the sampled force feedback, and
+    the test also replays the leg tensions. Raises `DesignError` for an inverse hysteresis, which is not supported in this form.
     """
     if given.compensation is not None:
         raise refuse("--hardware", *NO_INVERSE)

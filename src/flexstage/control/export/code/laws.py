@@ -25,10 +25,11 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True)
 class Core:
-    """Control law as C: state arrays with sizes, settings, and statements.
+    """Controller as C code: state arrays with sizes, settings, and statements.
 
-    `locals` are declared at the head. `command` computes the command from errors and states. `begin` sets the states so that the command
-    equals the last applied stroke. `next` computes the next states into arrays `next_<state>`. `tables` are declared at file level.
+    `locals` are declared at the head of the step. `command` computes the command from errors and states. `begin` sets the states so that
+    the command equals the last applied stroke. `next` computes the next states into arrays `next_<state>`. `tables` are declared at file
+    level.
     """
 
     states: tuple[tuple[str, int], ...]
@@ -52,7 +53,7 @@ def law_as_c(given: Machine, law: Decentralised | None) -> Core:
 
 
 def matrix_core(linear: Parts) -> Core:
-    """Generate any controller from its matrices and the plant's: z+ = A z + ..., command = C z + ...
+    """Generate any controller from its matrices and the plant's: z+ = A z + ..., command = C z + ..., with states z and next states z+.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

@@ -163,7 +163,7 @@ def _one_leg(legs: SampledLegs, target: str, gain: str, tension: str, *, place: 
 
 
 def legs_test(given: Machine, legs: SampledLegs, name: str) -> Sequence[str]:
-    """Generate a function that replays tensions swept up to a tenth of the rate and returns the largest stroke deviation from the law."""
+    """Generate a function that replays a sweep of tensions and returns the largest deviation of the C code's strokes from Python's."""
     tensions, wanted = _swept(given, legs)
     m, volts = len(given.actuators), ", volts" if has_volts(given) else ""
     return [

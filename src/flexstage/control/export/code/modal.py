@@ -13,9 +13,9 @@ _WORST = 1e8
 
 
 def modal_form(given: System) -> System:
-    """Transform a system by z = V^-1 x, so that A has diagonal blocks of one and two states.
+    """Transform the states x of a system to z = V^-1 x, so that its matrix A has diagonal blocks of one and two states.
 
-    The columns of V are the real mode vectors, of unit length.
+    The columns of V are the real mode vectors of A, of unit length.
 
     Returns the system unchanged if the condition number of V exceeds 1e8 (dependent modes).
 

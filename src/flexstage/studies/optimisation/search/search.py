@@ -30,7 +30,7 @@ Walk = Generator[Array, "Point | str", "Trace"]
 
 @dataclass(eq=False)
 class Trace:
-    """History of a search: the best `point` and its `weights`, the `history` of accepted points, the number of `evaluated` points.
+    """History of a search: the best `point`, its multipliers `weights`, the `history` of accepted points, the number of `evaluated` points.
 
     `converged` is true if no change improves the objective to first order. `reason` explains a missing point.
     """
@@ -44,11 +44,12 @@ class Trace:
 
 
 def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough: float = -np.inf) -> Walk:
-    """Search from a `start` (n,), given by fractions of the ranges. The search ends early if the objective reaches `enough`.
+    """Search from a `start` (n,), given by fractions of the ranges.
 
-    The method is sequential quadratic programming with an exact penalty for the largest violation (Fletcher & de la Maza, Mathematical
-    Programming 43 (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The weights of modes are
-    transferred to the next design by the overlap of mode shapes. `trace` can be read during the search.
+    The search ends early if the constraint value c of the objective is at most `enough`. The method is sequential quadratic programming
+    with an exact penalty for the largest violation (Fletcher & de la Maza, Mathematical Programming 43 (1989) 235). The Lagrangian's
+    curvature is estimated by damped BFGS updates (Powell 1978). The multipliers of modes are transferred to the next design by the overlap
+    of mode shapes. `trace` can be read during the search.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

@@ -26,8 +26,8 @@ Reasons = dict[int, str]
 class Piece:
     """Designs from number `start`: variables (n, d) and responses (n, r) in SI.
 
-    `failures` contains the reasons for failed designs by row; their responses are NaN. `provenance` contains the versions of the programs;
-    with different versions, the last digits may differ.
+    `failures` contains the reasons for failed designs by row; their responses are NaN. `made` contains the versions of the programs; with
+    different versions, the last digits may differ.
     """
 
     start: int
