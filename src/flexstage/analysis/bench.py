@@ -125,7 +125,7 @@ class StageResults:
         return self._corrections[point]
 
     def stopped(self, point: str) -> tuple[Matrix, StrokeLimits]:
-        """Strokes per unit motion of a point with lost motion corrected, and limits of strokes and of the stops within reach."""
+        """Strokes per unit motion of a point, with lost motion corrected, and the limits set by strokes and by the stops within reach."""
         return with_stops(self.mechanism, self.kinematics, self.correction(point), self.limits, point)
 
     @cached_property
@@ -272,7 +272,7 @@ class StageResults:
 
     @cached_property
     def map_error(self) -> Array:
-        """Largest errors of the linear map (..., 6)."""
+        """Largest error of the linear map from strokes to platform twist, in each component (..., 6)."""
         return linear_map_error(self.mechanism, self.kinematics, self.limits).worst
 
     def arm(self, point: str) -> Array:

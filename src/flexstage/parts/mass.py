@@ -73,9 +73,9 @@ def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = No
 
 
 def of_moments(density: Number, moments: Moments) -> MassProperties:
-    """Compute mass properties of a region of uniform density [kg/m^3] from its moments.
+    """Compute mass properties of a region of uniform density rho [kg/m^3] from its moments.
 
-    The inertia tensor about the centre is J = rho (tr S I - S), with the density rho, the second moments S and the unit matrix I.
+    The inertia tensor about the centre is J = rho (tr S I - S), with the second moments S of the volume and the unit matrix I.
 
     >>> of_moments(3.0, Moments(np.array(2.0), np.zeros(3), np.eye(3))).inertia.diagonal().tolist()
     [6.0, 6.0, 6.0]

@@ -74,7 +74,7 @@ def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
     """Generate the controller of a loop as C99; returns the texts of `controller.c` and its header, by file name.
 
-    The stem is the prefix of C names.
+    The stem of the file name is the prefix of all C names.
 
     With `legs` the code includes the force feedback of these legs. Raises `DesignError` for a name without `.c` or a reserved name.
 
@@ -108,8 +108,8 @@ def hardware_files(
 ) -> dict[Path, str]:
     """Generate a controller for hardware (see `hardware_code`): texts by file of `controller.c`, its header and `controller_test.c`.
 
-    The test simulates the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad]. Raises
-    `DesignError` for a name without `.c` or a reserved name.
+    The test replays a simulation of the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad].
+    Raises `DesignError` for a name without `.c` or a reserved name.
     """
     source = Path(path)
     require(hardware_findings(path))
@@ -199,7 +199,7 @@ def plant_file(given: Plant) -> bytes:
 
 
 def path_file(commanded: Array, step: float, coordinates: tuple[Channel, ...]) -> str:
-    """Generate a CSV file of a trajectory (n, f), sampled every `step` [s]: times, then coordinates with units.
+    """Generate a CSV file of a trajectory (n, f) of f coordinates, sampled every `step` [s]: times, then coordinates with units.
 
     >>> path_file(np.array([[0.0], [1e-6]]), 1e-4, (Channel("x", "m"),)).splitlines()
     ['time [s],x [m]', '0,0', '0.0001,1e-06']

@@ -53,7 +53,7 @@ class Fitted(Generic[_State]):
 
 
 def gauss_newton(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
-    """Minimise |r(u)|^2 + |u|^2 over the parameters u by Gauss-Newton steps with step halving, from `start` with its `state`.
+    """Minimise |r|^2 + |u|^2, with residuals r and parameters u, by Gauss-Newton steps with step halving, from `start` with its `state`.
 
     Raises `DesignError` if the iteration does not converge, or if steps lead to invalid designs.
 

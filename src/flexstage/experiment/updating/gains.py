@@ -30,7 +30,7 @@ _LENGTH, _ANGLE, _VOLTAGE = dimension_of("m"), dimension_of("rad"), dimension_of
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """Static gains (p, m), SI: reading per input (free stroke, current or force), and their standard deviations due to noise.
+    """Static gains (p, m) of p outputs per unit of m inputs (free stroke, current or force), and their standard deviations due to noise.
 
     `units` (p, m) are the SI units of the gains.
     """

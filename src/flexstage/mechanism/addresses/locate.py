@@ -42,7 +42,7 @@ class Place:
 
     @property
     def address(self) -> str:
-        """Full address of the value; if the link's part is restricted, the address omits the level of the part inside."""
+        """Full address of the value, without the level `part` between a link's restricted part and the part inside it."""
         inside = bool(self.owners) and not self.in_link and self.path[:1] == ("part",)
         path = self.path[:2] if self.number else self.path
         return ".".join((*self.owners[-1:], *path[inside:]))

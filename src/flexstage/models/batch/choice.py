@@ -59,7 +59,9 @@ def platform_rows(model: LinearModel) -> Array:
 
 
 def compliance_root(model: LinearModel, rows: Array) -> Array:
-    """Compute a root R (..., r, 6) of the static compliance C = R^T R of the motions `rows` (..., 6, n); NaN if K is not positive definite.
+    """Compute a root R (..., r, 6) of the static compliance C = R^T R for the motions `rows` (..., 6, n).
+
+    The result is NaN if the stiffness matrix is not positive definite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -50,7 +50,7 @@ class Surface:
     """Polynomial fit of the kernel input of a family for values from `low` to `high` (P,).
 
     `fixed` (numbers,) are the numbers of the nominal design, used where no piece fits them. `error` is the largest error at random designs,
-    relative to the maximum value. Numbers below the diagonals of symmetric matrices are not fitted; they have the values in `fixed`.
+    relative to the scale of each number. Numbers below the diagonals of symmetric matrices are not fitted; they have the values in `fixed`.
     """
 
     low: Array

@@ -75,7 +75,7 @@ class StageData:
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
 
     def reach(self, motion: Motion) -> float:
-        """Return the largest displacement [m] in a motion: of a vertex, or at large displacements of a body's reference point or a node."""
+        """Return the largest displacement [m] of a vertex in a motion; in a large motion, of a body's reference point or a node."""
         if motion.course is not None:
             return motion.course.reach
         moved = self.mesh.displacement(motion.twists)

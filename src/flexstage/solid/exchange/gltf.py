@@ -40,7 +40,7 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Surface of a body or link: `vertices` (v, 3) [m] in the stage's frame, `triangles` (t, 3), `shifts` (k, v, 3) [m] in k motions."""
+    """Surface of a body or link: `vertices` (v, 3) [m] in the stage's frame, `triangles` (t, 3), displacements `shifts` (k, v, 3) [m]."""
 
     vertices: Array
     triangles: Array

@@ -17,7 +17,7 @@ class ObjectiveDirection(Enum):
 
     @property
     def sense(self) -> Sense:
-        """Sense of a limit that better values meet: `at least` to maximise, `at most` to minimise."""
+        """Sense of a limit on the objective that better designs meet: `at least` if it is maximised, `at most` if it is minimised."""
         return Sense.AT_LEAST if self is ObjectiveDirection.MAXIMISE else Sense.AT_MOST
 
 

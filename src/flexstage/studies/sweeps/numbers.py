@@ -29,7 +29,7 @@ class Numbers:
         return self.nominal + values @ self.matrix
 
     def ranges(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """Compute limits (P,) that the numbers do not exceed, for independent variables from `low` to `high` (d,).
+        """Compute lower and upper bounds (P,) of the numbers for independent variables from `low` to `high` (d,).
 
         >>> low, high = Numbers(("a",), np.array([5.0]), np.array([[-2.0]])).ranges(np.array([-1.0]), np.array([2.0]))
         >>> low.tolist(), high.tolist()

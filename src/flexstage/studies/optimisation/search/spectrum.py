@@ -24,8 +24,8 @@ class Spectrum:
     To first order, the frequencies after a small change d of the n variables are the eigenvalues of diag(f) plus the sum of d_p slopes_p
     over the variables p, for distinct, repeated or crossing modes. The entries are slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM)
     phi_j / (2 pi (omega_i + omega_j)). Here f are the `frequencies`, phi the mode shapes, lambda = omega^2 the eigenvalues, and dK and dM
-    the derivatives of stiffness and mass matrix. `shapes` (N, k) and `weighted`, the mass matrix times `shapes`, are used to pair the modes
-    of two designs.
+    the changes of the stiffness and mass matrices per unit of the variable p. `shapes` (N, k) and `weighted`, the mass matrix times
+    `shapes`, are used to pair the modes of two designs.
     """
 
     frequencies: Array

@@ -91,7 +91,7 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
 
 
 def piece_size(study: Study) -> int:
-    """Return the number of designs computed at once. The number is larger if the engine computes all responses of a large study.
+    """Return the number of designs in a piece. The number is larger if the engine computes all responses of a large study.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> piece_size(neck_study()), piece_size(neck_study(1_000_000))

@@ -84,7 +84,7 @@ class Results:
         raise refuse(name, "unknown column", f"Use one of {', '.join(sum(self.names, ()))}")
 
     def to_xarray(self) -> Any:
-        """Convert the results to an xarray dataset over the design number, with units in the attributes. Requires the extra `tables`."""
+        """Convert the results to an xarray dataset of dimension `design`, with units in the attributes. Requires the extra `tables`."""
         import xarray
 
         named = [(name, unit) for names, units in zip(self.names, self.units, strict=True) for name, unit in zip(names, units, strict=True)]
@@ -291,9 +291,10 @@ def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
 
 
 def gather(path: Path, study: Study, size: int) -> Array:
-    """Write the results file with all pieces of `size` designs, and remove the pieces. Returns the mask (k,) of the pieces in the file.
+    """Write the results file with all pieces of `size` designs, and remove the pieces.
 
-    Raises `DesignError` if the file cannot be written; file and pieces are then unchanged.
+    Returns a mask (k,) of the planned pieces: true for those in the file. Raises `DesignError` if the file cannot be written; file and
+    pieces are then unchanged.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
