@@ -32,8 +32,8 @@ class Problem:
 class Amount:
     """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. The display `unit` is `factor` SI units.
 
-    `low` and `high` are the ends of the slider, within the bounds of the number. `formula`, if not null, defines the number. `old` is the
-    value in the file on disk. `group` is the table that contains the number; `line` is the line of the number, or of this table.
+    `low` and `high` are the ends of the slider, within the bounds of the number. `formula` defines the number. `old` is the value in the
+    file on disk. `group` is the table that contains the number; `line` is the line of the number, or of this table.
     """
 
     address: str

@@ -169,7 +169,7 @@ def body_twists(
 def mode_motions(
     model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int, *, about: str = ""
 ) -> Iterator[Motion]:
-    """Yield the `count` lowest modes and all higher platform modes as mass-normalised motions. All remarks end with `about`."""
+    """Yield the `count` lowest modes and all higher platform modes as mass-normalised motions. `about` is appended to all remarks."""
     frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
     last = max((*found.platform, -1)) + 1
     for index in range(min(len(found.names), max(count, last))):
