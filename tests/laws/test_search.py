@@ -57,6 +57,7 @@ from flexstage.control.tuning.search import (
     Variant,
     Work,
     beside_one_another,
+    climb,
     field,
     loud_enough,
     search,
@@ -352,6 +353,16 @@ def test_gains_too_high_for_shifted_modes_are_lowered_and_the_growing_motion_is_
     assert lowered.laws[0].proportional / high.laws[0].proportional == pytest.approx(ratio)
     assert 0.5 <= ratio < 1.0
     assert all(growth(lowered, offset)[0] < 0.0 for offset in shifts)
+
+
+def test_a_target_of_zero_is_climbed_from_what_the_start_reaches():
+    """PI that met no target leaves one of zero to PID; any multiple of it is met, too, so that the climb would never end."""
+    plant = integral_loop().plant
+    within = field(view(plant, platform_loops(plant.coordinates), 0.0), specified(spread=0.0))
+    found = search(within, PI_FAMILY)
+    assert found is not None
+    climbed = climb(within, [found], [0.0])
+    assert climbed.reached[0] >= 0.99 * found.reached[0]
 
 
 def test_work_is_allowed_to_a_search_that_has_none_left():
