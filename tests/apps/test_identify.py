@@ -143,7 +143,7 @@ def test_records_of_single_actuators_are_put_together(flexstage: Command, tmp_pa
     assert [mode["frequency_hz"] for mode in whole["modes"]] == pytest.approx(known.tolist(), rel=1e-3)
     alone = flexstage("identify", names[0], "--json", "-")
     assert "only B1 was driven" in alone.err
-    assert "one combination only" in alone.document["data_warnings"][0]
+    assert "only one combination" in alone.document["data_warnings"][0]
 
 
 def test_noise_gives_no_mode_and_says_so(flexstage: Command, tmp_path: Path) -> None:

@@ -178,7 +178,7 @@ def test_jog_reads_gauges_and_says_what_ends_it(page: Page) -> None:
             slider.dispatchEvent(new Event("input"));
         }"""
     )
-    until(page, "document.querySelector('#jog .beyond').textContent.includes('stroke ends')")
+    until(page, "document.querySelector('#jog .beyond').textContent.includes('stroke limit')")
     assert page.locator("#jog .channel.poor").count() > 0
     gauge = page.evaluate("() => studio.motion.value.gauges.values[0][0] * 1.2 * studio.state.value.actuators[0].high")
     assert f"{gauge * 1e6:.3g}" in page.inner_text("#jog .gauges").replace("\u2212", "-")
