@@ -153,7 +153,7 @@ BAD = {
     "corner and leakage are both specified": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=0.5, corner=1.0, leakage=1e6))),
     "needs the electromechanical coupling": ("parallelogram", LoopSetup(amplifier=ChargeSetup(corner=1.0))),
     "at least 0 and less than 1": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=1.0, corner=1.0))),
-    "forces drive the stage": ("voice-coil-stage", LoopSetup(amplifier=HELD)),
+    "the stage has force actuators": ("voice-coil-stage", LoopSetup(amplifier=HELD)),
     "the inverse applies to voltage drive": (
         "parallelogram",
         LoopSetup(amplifier=HELD, hysteresis=HystereticStacks(width=0.1), compensate=(Compensation.HYSTERESIS,)),

@@ -45,7 +45,7 @@ def file_text(name: str) -> str:
     """Return the design file of a case as shipped.
 
     >>> file_text("leaf-guide").splitlines()[0][:9]
-    '# A guide'
+    '# This gu'
     """
     return (FILES / f"{name}.toml").read_text(encoding="utf-8")
 
