@@ -17,6 +17,7 @@ from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.optimisation.search.spectrum import Modes, Spectrum, spectra
 from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.variable import Variable
 
 _STEP = 1e-20
 _APART = 1e-3
@@ -135,8 +136,7 @@ class Values:
         return [point if _finite(point) else "a measure has no finite value" for point in found]
 
     def _design(self, shares: Array) -> Mechanism:
-        columns = [variable.at(shares[:, number]) for number, variable in enumerate(self.study.variables)]
-        return self._bare.mechanism_for(np.stack(columns, axis=-1))
+        return self._bare.mechanism_for(np.stack(list(map(Variable.at, self.study.variables, np.transpose(shares))), axis=-1))
 
     def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
         designs, variables = np.shape(shares)

@@ -257,9 +257,9 @@ def _relaxed(
     done = dict[str, Answer | FailedPair]()
     for number, (each, pair) in enumerate(failed):
         said = partial(_notify(progress, f"{pair.name}, relaxed"), number / len(failed))
-        kept = store.kept(pair, "relaxed")
-        one = kept or replace(each, relaxed=tuple(relaxations(store.specification, pair, each, said)))
-        done[pair.name] = store.put(pair, "relaxed", one)
+        done[pair.name] = store.kept(pair, "relaxed") or store.put(
+            pair, "relaxed", replace(each, relaxed=tuple(relaxations(store.specification, pair, each, said)))
+        )
     return done
 
 
@@ -270,8 +270,8 @@ def joint_front(found: Answers) -> list[tuple[Answer, FrontPoint]]:
     >>> joint_front(Answers(example(), (), (), ()))
     []
     """
-    points = [(answer, point) for answer in found.answers for point in answer.front]
-    points.sort(key=lambda each: (-each[1].goal, each[1].second, each[0].file))
+    every = ((answer, point) for answer in found.answers for point in answer.front)
+    points = sorted(every, key=lambda each: (-each[1].goal, each[1].second, each[0].file))
     best, kept = math.inf, list[tuple[Answer, FrontPoint]]()
     for answer, point in points:
         if point.second < best:
