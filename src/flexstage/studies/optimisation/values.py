@@ -136,7 +136,7 @@ class Values:
         return [point if _finite(point) else "a measure has no finite value" for point in found]
 
     def _design(self, shares: Array) -> Mechanism:
-        return self._bare.mechanism_for(np.stack(list(map(Variable.at, self.study.variables, np.transpose(shares))), axis=-1))
+        return self._bare.mechanism_for(np.stack(list(map(Variable.at, self.study.variables, shares.T)), axis=-1))
 
     def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
         designs, variables = np.shape(shares)
