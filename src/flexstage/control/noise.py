@@ -250,7 +250,7 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         end = f"half the sampling rate, {0.5 / (closed.step or np.nan):g} Hz"
         yield f"{', '.join(bare)}: no specified bandwidth or filter; noise is limited to {end}"
     if len(bare) < len(sensors) - len(silent):
-        yield "gauge noise is white before the gauge's lag and filter; aliasing from above half the sampling rate is exact"
+        yield "gauge noise is assumed white before lag and filter; its aliasing from above half the sampling rate is computed exactly"
     if budget.slowly_rounding:
         units = {channel.name: channel.unit for channel in given.coordinates.readings()}
         half = ", ".join(

@@ -47,8 +47,8 @@ Commands: TypeAlias = Annotated[
     text_option(
         "--command",
         "AXIS=VALUE",
-        "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. "
-        "Default: the strokes that the design requires; if it requires none, flexstage budget uses the stroke along each axis alone.",
+        "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. Default: the strokes that the design "
+        "requires; if it requires none, flexstage budget uses the largest stroke along each axis with the other axes at rest.",
     ),
 ]
 

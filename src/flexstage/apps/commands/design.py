@@ -37,7 +37,9 @@ def design(
     ] = None,
     prove: Annotated[bool, typer.Option("--prove", help="Verification of the first three answers by finite elements.")] = False,
     tolerance: Annotated[bool, typer.Option("--tolerance", help="Production yield of the first three answers within tolerances.")] = False,
-    loop: Annotated[bool, typer.Option("--loop", help="Sensitivity crossover of the control loops of the first three answers.")] = False,
+    loop: Annotated[
+        bool, typer.Option("--loop", help="Computation of each control loop's sensitivity crossover, for the first three answers.")
+    ] = False,
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:

@@ -61,7 +61,9 @@ def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs
         )
     if isinstance(system, control.TransferFunction) and (system.ninputs, system.noutputs) != (1, 1):
         what = f"unsupported transfer function with {system.ninputs} inputs and {system.noutputs} outputs"
-        raise refuse("system", what, "Convert the system to a StateSpace: the realisation of several channels is not unique")
+        raise refuse(
+            "system", what, "Convert the system to a StateSpace: a transfer function with several channels has no unique realisation"
+        )
     found = control.ss(system)
     if found.dt is True or found.dt is None:
         raise refuse(

@@ -77,7 +77,7 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, ReplacementPart]) -> list
     drawn = {part.drawn_name for part in parts.values()}
     taken = {name + KEPT: name for name in drawn} | {name: part.drawn_name for name, part in parts.items() if name != part.drawn_name}
     results = [
-        Finding(f"parts.{name}", "the part name is in use", f"Rename the part: the calibrated {old} requires this name")
+        Finding(f"parts.{name}", "the part name is in use", f"Rename this part: its present name is required for the calibrated {old}")
         for name, old in taken.items()
         if name in mechanism.parts
     ]

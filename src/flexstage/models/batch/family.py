@@ -66,12 +66,12 @@ def _number(mechanism: Mechanism, address: str) -> Any:
     quantity_of(mechanism, address)
     value = get(mechanism, address)
     if np.ndim(value):
-        raise refuse(address, "a number with several components", "Use the address of one component")
+        raise refuse(address, "the value has several components", "Use the address of one component")
     return value
 
 
 def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
-    """Build the family of the descriptions that the function `draw` returns for P numbers with these names.
+    """Build a family of descriptions: the function `draw` returns the description for P numbers, called `names`.
 
     `nominal` (P,) are the numbers of the nominal design.
 

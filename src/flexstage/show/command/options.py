@@ -116,8 +116,8 @@ InputDensities: TypeAlias = Annotated[
     text_option(
         "--input-asd",
         "INPUT=DENSITY",
-        'White noise of an input, as the amplitude spectral density of its value, velocity or acceleration, e.g. "ground.z=1 nm/Hz^0.5" '
-        'or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
+        "White noise: amplitude spectral density of an input, its velocity or its acceleration. The unit selects one of the three, e.g. "
+        '"ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
     ),
 ]
 

@@ -69,7 +69,7 @@ def _mappings(kinematics: Kinematics) -> list[Block]:
     gauges = [gauge_table(kinematics)] if kinematics.gauges else []
     if not kinematics.actuated:
         return [*gauges]
-    return [mapping_table(kinematics), Folded("Platform motion per stroke and gauge mapping", (jacobian_table(kinematics), *gauges))]
+    return [mapping_table(kinematics), Folded("Platform motion per stroke; gauge mapping", (jacobian_table(kinematics), *gauges))]
 
 
 def stiffness_section(analysis: Analysis) -> Section | None:
