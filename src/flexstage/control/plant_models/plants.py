@@ -37,8 +37,8 @@ _REPEATED = 1e-3
 class Plant:
     """Continuous plant between hold and sampler: a stage with amplifiers and gauges.
 
-    Inputs of `system` are free strokes [m] or currents [A] `<actuator>` (between hold and amplifiers), ground motions `ground.<c>` [m,
-    rad], and wrenches `platform.fx` ... [N, N m]. Outputs are the readings `gap.<gauge>` [m, rad] (after lag and filter, before noise and
+    Inputs of `system`: `<actuator>`, the free stroke [m] or current [A] (between hold and amplifiers); `ground.<c>`, the ground motions [m,
+    rad]; `platform.fx` ..., the wrenches [N, N m]. Outputs are the readings `gap.<gauge>` [m, rad] (after lag and filter, before noise and
     rounding), absolute motions `platform.<c>` and `<point>.<c>` [m, rad], and motions relative to the ground, `relative.<c>` and
     `relative.<point>.<c>`. `states` names the states of `system`. `frequencies` [Hz] and `ratios` belong to the retained modes; `left_out`
     counts the omitted modes, whose compliance is a static term. `note` lists the simplifications. `heard` contains the noise densities of

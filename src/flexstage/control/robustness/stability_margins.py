@@ -36,7 +36,8 @@ class ChannelMargins:
 
     The loop is stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit). The loop is also stable for
     phases up to `phase` [rad] of either sign, and for delays up to `delay` [s] (factors e^{-j omega tau} of a delay tau). `disk` is alpha
-    of the balanced disk margin: gain and phase may change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
+    of the balanced disk margin: the loop is stable with any complex factor (1 + d/2)/(1 - d/2), |d| < alpha, which changes gain and phase
+    *together*.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -45,8 +46,8 @@ class ChannelMargins:
         head="coordinate",
         notes=(
             (
-                "One loop at a time, opened at the pose with the others closed. Disk margin alpha <= 2: gain and phase may change together "
-                "by a factor (1 + d/2)/(1 - d/2), |d| < alpha."
+                "One loop at a time, opened at the pose with the others closed. Disk margin alpha <= 2: the loop is stable with any "
+                "complex factor (1 + d/2)/(1 - d/2), |d| < alpha, which changes gain and phase together."
             ),
         ),
     )

@@ -33,7 +33,7 @@ class Loop:
     """Interconnected plant and controller: the basis of margins, stability, budgets and simulations.
 
     `plant` is the continuous plant, and `held` is the same plant between hold and sampler. `controller` is the specified controller without
-    unused inputs (`applied.<actuator>`). `states` names the states of `system`.
+    its inputs `applied.<actuator>`, which a linear loop does not use. `states` names the states of `system`.
 
     `system` is the closed loop. Inputs: `reference.<c>` [m, rad]; `noise.<gauge>` [m] added to a reading, `noise.<actuator>` [m] added to a
     command; `ground.<c>`, `platform.fx` ... (constant over a sample). Outputs: `platform.<c>`, `<point>.<c>`, `relative.<c>` ...; `S1` ...

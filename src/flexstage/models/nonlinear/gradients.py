@@ -40,7 +40,9 @@ def evaluate_designs(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Evaluate results (d, ...) for a batch of d designs, given as one description with arrays; (...) for a single design.
+    """Evaluate results for a batch of d designs (one description with arrays), or for a single design.
+
+    The results of a batch have the shape (d, ...), and those of a single design (...).
 
     The other arguments are those of `equilibrium`; axes of cases come after the axis of designs. For a design without an equilibrium, the
     state is NaN, and so are the results.

@@ -28,8 +28,8 @@ class Plan:
 
     Saltelli's plan contains two Sobol samples A and B of `count` designs each. For each of d variables, the plan also contains A with this
     variable's column from B. Saltelli's plan therefore has count (d + 2) designs, for Sobol indices (Saltelli et al., Computer Physics
-    Communications 181 (2010) 259). With `pairs`, Saltelli's plan also contains B with each column from A: count (2 d + 2) designs, for
-    second-order indices.
+    Communications 181 (2010) 259). With `pairs`, Saltelli's plan also contains, for each variable, B with this variable's column from A.
+    It then has count (2 d + 2) designs, for second-order indices.
     """
 
     sampling: Sampling

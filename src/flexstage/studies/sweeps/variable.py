@@ -45,12 +45,12 @@ class Variable:
 
     @property
     def numbers(self) -> Annotated[tuple[str, ...], VIEW, Called("addresses")]:
-        """The addresses of the design that the variable sets."""
+        """The design's addresses whose values are set by the variable."""
         return self.addresses if self.variant is None else ()
 
     @property
     def parameters(self) -> Annotated[tuple[str, ...], VIEW]:
-        """The parameters of the case that the variable sets."""
+        """The case's parameters whose values are set by the variable."""
         return () if self.variant is None else self.addresses
 
     @property

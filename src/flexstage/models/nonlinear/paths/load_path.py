@@ -83,8 +83,8 @@ def load_path(
     Coordinates in `hold` are fixed at their values. The iteration at every value starts at the nominal position or, if it does not
     converge, at the state of the nearest converged value.
 
-    Stable states are on one continuous path along the drive; a stable state that this path does not reach is NaN. Raises `DesignError` for
-    an unknown drive.
+    All stable states of the result are on one continuous path along the drive. At values that this path does not reach, stable states are
+    replaced by NaN. Raises `DesignError` for an unknown drive.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -114,7 +114,7 @@ def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: M
 def continue_along(begin: State, states: State, away: Array) -> State:
     """Return the states (k,) of a drive with all stable states on one continuous path from `begin`.
 
-    Stable states that this path does not reach are NaN.
+    At values that this path does not reach, stable states are replaced by NaN.
 
     `away` (k,) are the distances of the drive from its start.
     """
