@@ -67,7 +67,7 @@ def test_what_is_no_record_is_told(tmp_path: Path) -> None:
     assert "got a folder" in refusal(tmp_path)
     for content, told in {
         b"": "it is empty",
-        b"PK\x03\x04...": "spreadsheets",
+        b"PK\x03\x04...": "a spreadsheet",
         b"TDSm....": "TDMS",
         b"one\ntwo\n": "no line of numbers",
         b"\x00\x01\x02\x03": "neither text",
