@@ -11,7 +11,11 @@ import pytest
 from flexstage.analysis.assessment.judge import measure_all
 from flexstage.analysis.assessment.measures import Extreme
 from flexstage.analysis.assessment.requirements import Sense, measure
+from flexstage.base.number import Table
 from flexstage.base.storage.document import plain
+from flexstage.cases.registry import CASES, case
+from flexstage.mechanism.addresses.address import addresses, get, set_values
+from flexstage.mechanism.checks import check
 from flexstage.studies.optimisation.search.front import pareto_front
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.search.problem import Problem, Side
@@ -72,6 +76,20 @@ def test_values_are_those_of_the_judge():
     twice = Values(study, (*measures[:2], measures[0]))(shares[None])[0]  # an objective that is a limit, too
     assert twice.values.tolist() == [*point.values[:2], point.values[0]]
     assert twice.gradient.tolist() == point.gradient[[0, 1, 0]].tolist()
+
+
+@pytest.mark.parametrize("name", CASES if FULL else ("double-triangle", "bridge", "voice-coil-xy"))
+def test_errors_of_a_design_are_those_of_its_complex_step(name):
+    stage, rng = case(name), np.random.default_rng(3)
+    numbers = {each: get(stage, each) for each in addresses(stage)}
+    varied = [each for each, value in numbers.items() if isinstance(value, float) and value]
+    for address in rng.choice(varied, 12, replace=False).tolist():
+        for factor in (0.7, -1.0, 30.0):
+            value = np.full(2, factor * numbers[address])
+            real, stepped = (
+                check(replace(set_values(stage, [(address, each)]), formulas=Table({}))) for each in (value, value + 1e-30j * np.eye(2)[0])
+            )
+            assert [each.where for each in stepped] == [each.where for each in real], (address, factor)
 
 
 @pytest.mark.parametrize("seed", range(20 if FULL else 5))
