@@ -46,7 +46,7 @@ from flexstage.control.study.setup import (
 )
 from flexstage.control.study.study import loop_study
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
-from flexstage.control.tuning.find import find, slower, unstable_places
+from flexstage.control.tuning.find import find, instability_frequencies, reduce_gains
 from flexstage.control.tuning.fit import Bounds
 from flexstage.control.tuning.laws import PI_FAMILY, RESONANT_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
@@ -57,9 +57,9 @@ from flexstage.control.tuning.search import (
     Variant,
     Work,
     beside_one_another,
-    climb,
     field,
     loud_enough,
+    raise_targets,
     search,
     variants,
 )
@@ -345,10 +345,10 @@ def test_gains_too_high_for_shifted_modes_are_lowered_and_the_growing_motion_is_
         grown = {offset: growth(high, offset) for offset in (-0.1, -0.05, 0.05, 0.1)}
         if max(rate for rate, _ in grown.values()) > 0.0:
             break
-    expected = sorted(frequency for rate, frequency in grown.values() if rate > 0.0)  # a slower clock, so the modes stay where they are
+    expected = sorted(frequency for rate, frequency in grown.values() if rate > 0.0)  # the clock is slower, the modes are the same
     assert expected
-    np.testing.assert_allclose(sorted(unstable_places(within, high)), expected, rtol=1e-6)
-    calmer = slower(within, [high])
+    np.testing.assert_allclose(sorted(instability_frequencies(within, high)), expected, rtol=1e-6)
+    calmer = reduce_gains(within, [high])
     assert calmer is not None
     lowered = calmer.tuning.controller
     assert isinstance(lowered, Decentralised)
@@ -364,7 +364,7 @@ def test_a_target_of_zero_is_climbed_from_what_the_start_reaches():
     within = field(view(plant, platform_loops(plant.coordinates), 0.0), specified(spread=0.0))
     found = search(within, PI_FAMILY)
     assert found is not None
-    climbed = climb(within, [found], [0.0])
+    climbed = raise_targets(within, [found], [0.0])
     assert climbed.reached[0] >= 0.99 * found.reached[0]
 
 

@@ -186,14 +186,14 @@ def _sought(within: Field, seek: Callable[[Field], SearchResult | None]) -> _Can
             controller = _controller(tried, found)
             judged = _judge(within, controller)
             if np.isfinite(missed := excess(tried, found)) and (kept := _candidate(within, controller, judged, missed)) is not None:
-                calmer = slower(within, rejected)
+                calmer = reduce_gains(within, rejected)
                 return kept if calmer is None or calmer.unmet or calmer.merit <= kept.merit else calmer
             rejected.append(controller)
             within.work.allow(_MORE)
-            begun, places = found, (*places, judged.frequency / (1.0 + judged.offset), *unstable_places(within, controller))
+            begun, places = found, (*places, judged.frequency / (1.0 + judged.offset), *instability_frequencies(within, controller))
         if begun is None:
             break
-    return slower(within, rejected)
+    return reduce_gains(within, rejected)
 
 
 def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
@@ -201,7 +201,7 @@ def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
     return max((each for each in candidates if each is not None), key=lambda each: (not each.unmet, each.worth), default=None)
 
 
-def slower(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
+def reduce_gains(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
     """Return the best rejected controller with reduced gains: all are multiplied by the largest factor that makes one acceptable."""
     distinct = {(each.laws, each.notches): each for each in rejected}.values()
     for factor in _FACTORS:
@@ -317,7 +317,7 @@ def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
     return replace(judged, growth=max(judged.growth, *far)) if far else judged
 
 
-def unstable_places(within: Field, controller: Decentralised) -> Iterator[float]:
+def instability_frequencies(within: Field, controller: Decentralised) -> Iterator[float]:
     """Yield the frequency [Hz] of the fastest growing motion, divided by 1 + shift, for each unstable mode shift beyond the spread."""
     seen, system = within.seen, controller.system(within.seen.step)
     for offset, plant in zip(seen.offsets, seen.systems, strict=True):
@@ -325,7 +325,7 @@ def unstable_places(within: Field, controller: Decentralised) -> Iterator[float]
         pole = poles[np.argmax(np.real(poles) if system.step is None else np.abs(poles))]
         rate = pole if system.step is None else np.log(pole) / system.step  # poles of delays are 0: only the fastest one has a rate
         if abs(offset) > within.spec.spread and rate.real >= 0.0:
-            yield abs(float(rate.imag)) / (2.0 * np.pi) / (1.0 + offset)
+            yield abs(rate.imag) / (2.0 * np.pi) / (1.0 + offset)
 
 
 def _controller(within: Field, found: SearchResult) -> Decentralised:

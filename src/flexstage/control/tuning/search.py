@@ -389,8 +389,8 @@ def advance(within: Field, known: Decentralised) -> SearchResult:
         starts = [own, *_calmed(part, [own], _BACK)]
         if within.spec.objective is TuningObjective.SETTLING:  # high rejection implies fast settling
             balanced = replace(part, spec=replace(part.spec, objective=TuningObjective.BALANCE))
-            starts.insert(0, climb(balanced, starts, _frequencies_of_aim(balanced, own)))
-        found = climb(part, starts, _frequencies_of_aim(part, starts[0]))
+            starts.insert(0, raise_targets(balanced, starts, _frequencies_of_aim(balanced, own)))
+        found = raise_targets(part, starts, _frequencies_of_aim(part, starts[0]))
         for place, loop in enumerate(block):
             points[loop], reached[loop], noises[loop] = found.points[place], found.reached[place], _noises(part, found)[place]
     points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
@@ -456,7 +456,7 @@ def _on_from(within: Field, shapes: tuple[Shape, ...], begun: SearchResult, bloc
     """Loops continued from a PI result, with a tiny derivative."""
     points = tuple(_with_derivative(shape, begun.shapes[loop], begun.points[loop]) for shape, loop in zip(shapes, block, strict=True))
     reached = [begun.reached[loop] for loop in block]
-    return climb(within, [SearchResult(shapes, _shared(within, points), tuple(reached))], reached)
+    return raise_targets(within, [SearchResult(shapes, _shared(within, points), tuple(reached))], reached)
 
 
 def _shared(within: Field, points: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -513,7 +513,7 @@ def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]
         calm = _calmed(within, far, _BACK)
     if within.spec.objective is TuningObjective.BALANCE and _is_calm(within, calm[0]):
         within = replace(within, allowed=tuple(_NOISIER * each for each in _noises(within, calm[0])))
-    return climb(within, [*calm, *far], _wanted(within, calm[0], least))
+    return raise_targets(within, [*calm, *far], _wanted(within, calm[0], least))
 
 
 def _calmed(within: Field, starts: list[SearchResult], share: float) -> list[SearchResult]:
@@ -556,21 +556,21 @@ def _far(within: Field, found: SearchResult) -> float:
     return float(np.exp(np.mean(np.log(rejections(within, found)))))
 
 
-def climb(within: Field, starts: list[SearchResult], wanted: list[float]) -> SearchResult:
+def raise_targets(within: Field, starts: list[SearchResult], targets: list[float]) -> SearchResult:
     """Increase the target from the first start that meets it: all loops together, then individually, by decreasing ratios.
 
     From a target of zero, the increase begins at the frequencies that the start reaches.
     """
-    within, best = loud_enough(within, starts, wanted)
+    within, best = loud_enough(within, starts, targets)
     for _ in range(_LEVELS - 1):
         if best is not None:
             break
-        wanted = [one / _RATIO for one in wanted]
-        best = _first_kept(within, starts, wanted)
+        targets = [one / _RATIO for one in targets]
+        best = _first_kept(within, starts, targets)
     if best is None or within.spec.objective is TuningObjective.NOISE:
-        return replace(best or starts[0], reached=(0.0,) * len(wanted))
+        return replace(best or starts[0], reached=(0.0,) * len(targets))
     ratio, groups = _RATIO, sorted(set(within.alike))
-    reached = [one or own for one, own in zip(wanted, _frequencies_of_aim(within, best), strict=True)]
+    reached = [one or own for one, own in zip(targets, _frequencies_of_aim(within, best), strict=True)]
     while ratio > _FINEST:
         for moved in [groups, *([[group] for group in groups] if len(groups) > 1 else [])]:
             farther = [one * (ratio if first in moved else 1.0) for one, first in zip(reached, within.alike, strict=True)]

@@ -17,7 +17,6 @@ from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.optimisation.search.spectrum import Modes, Spectrum, spectra
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.variable import Variable
 
 _STEP = 1e-20
 _APART = 1e-3
@@ -136,17 +135,18 @@ class Values:
         return [point if _finite(point) else "a measure has no finite value" for point in found]
 
     def _design(self, shares: Array) -> Mechanism:
-        return self._bare.mechanism_for(np.stack(list(map(Variable.at, self.study.variables, shares.T)), axis=-1))
+        columns = [each.at(shares[:, number]) for number, each in enumerate(self.study.variables)]
+        return self._bare.mechanism_for(np.stack(columns, axis=-1))
 
     def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
-        designs, variables = np.shape(shares)
+        designs, variables = shares.shape
         each = variables if slopes else 1
         rows = np.repeat(shares, each, axis=0)
         if slopes:
             rows = rows + 1j * _STEP * np.tile(np.eye(variables), (designs, 1))
         with np.errstate(all="ignore"):
             stepped = self._design(rows)
-            require_valid(replace(stepped, formulas=Table({})))  # formulas have just been computed
+            require_valid(replace(stepped, formulas={}))  # formulas have just been computed
             bench = StageResults(stepped, self._command)
             modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
             columns: dict[tuple[str, str], Sequence[Scalars | NumberedFrequency]] = {}

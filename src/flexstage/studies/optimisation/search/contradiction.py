@@ -17,7 +17,7 @@ _COUNTS = 1e-4
 
 
 def contradictions(
-    setting: Setting, starts: Sequence[Array], told: CountReport | None = None, *, most: int = 6
+    setting: Setting, starts: Sequence[Array], report: CountReport | None = None, *, most: int = 6
 ) -> tuple[Contradiction, ...]:
     """Find at most `most` irreducible infeasible sets of limits, from any of the starts. Returns an empty tuple if all limits can be met.
 
@@ -26,12 +26,12 @@ def contradictions(
     in no set yet.
     """
     found, left = list[Contradiction](), tuple(range(len(setting.kept)))
-    while len(found) < most and (least := _least_violation(setting, left, starts, told)) is not None and least.violation > SPARE:
+    while len(found) < most and (least := _least_violation(setting, left, starts, report)) is not None and least.violation > SPARE:
         begins = [least.point.shares, starts[0]]
         held = tuple(number for number, weight in zip(left, least.weights, strict=True) if weight > _COUNTS)
-        alone = _least_violation(setting, held, begins[:1], told)
+        alone = _least_violation(setting, held, begins[:1], report)
         known = (held, alone) if alone is not None and alone.violation > SPARE else (left, least)
-        chosen, ended = _irreducible_set(setting, *known, begins, told)
+        chosen, ended = _irreducible_set(setting, *known, begins, report)
         found.append(Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point))
         left = tuple(number for number in left if number not in chosen)
     return tuple(found)
