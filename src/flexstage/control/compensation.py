@@ -79,7 +79,7 @@ class StaticError(InNotebook):
 
     Rows of `error` are the reached coordinates, columns the commanded ones. The diagonal is the error of each axis, the other elements are
     crosstalk. `parasitic` (6, f) is the motion outside the ideal motions, per unit of the commanded pose. `offset` (6,) is the twist caused
-    by loads at zero command. `largest` is the largest error per unit of command, with rotations converted to lengths.
+    by loads at zero command. `largest` is the largest error per unit of command in all six directions, with rotations converted to lengths.
     """
 
     error: Matrix
@@ -94,12 +94,12 @@ class StaticError(InNotebook):
 
 
 def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
-    """Compute the static error of a compensation on a plant of any model.
+    """Compute the static error of a compensation for a plant described by any model.
 
     The error is E = I - V^+ T G. G are the gains, V^+ projects twists onto the ideal motions, and `plant` is the matrix T (6, n): the
-    platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any model). For ideal gains G = R_a, E equals R_a^+ Lambda R_a
-    with the lost motion Lambda (`lost_motion(...).loss`). `deflection` (6,) is the plant's deflection under the loads with fixed strokes.
-    Raises `DesignError` if the plant has other actuators than the compensation.
+    platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any model). For the ideal gains G = R_a, the error is E =
+    R_a^+ Lambda R_a, where Lambda is the lost motion (`lost_motion(...).loss`). `deflection` (6,) is the plant's deflection under the loads
+    with all strokes zero. Raises `DesignError` if the plant has other actuators than the compensation.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -24,9 +24,9 @@ class Decentralised(CheckedFields):
     """Decentralised controller: a control law with notch filters for each loop, and feedforward of the reference to the strokes.
 
     The strokes are `loops.drive` times the loops' commands, plus `feedforward` times the reference. `laws`, `notches` and `prefilters` have
-    one entry for each loop; default: no notches and prefilters. `feedforward` (n, f) is R_a, or gains that also correct lost motion;
-    default: no feedforward. A prefilter acts on the reference of its loop, also for the feedforward. Raises `DesignError` for sizes that do
-    not match.
+    one entry for each loop (default: no notches, no prefilters). `feedforward` (n, f) is the matrix R_a of the ideal kinematics, or gains
+    that also correct lost motion (default: no feedforward). A prefilter filters the reference of its loop; the feedforward uses the
+    filtered reference. Raises `DesignError` for sizes that do not match.
     """
 
     loops: Loops
@@ -79,7 +79,7 @@ class Decentralised(CheckedFields):
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
-    """Return control law and notches of each loop in series, as a system with inputs `error`, `pose`, `applied` and output `command` [m].
+    """Return one system per loop, control law and notches in series: inputs `error`, `pose` and `applied`, output `command` [m].
 
     >>> from flexstage.control.controllers.pi import PI
     >>> from flexstage.control.controllers.loops import platform_loops

@@ -22,12 +22,12 @@ class Place:
 
 @dataclass(frozen=True)
 class Family:
-    """Controller family `name`: `laws` returns control laws C with |C g| = 1 at the crossover of a plant g.
+    """Controller family `name`: `laws` returns control laws C with a loop gain |C g| of 1 at the crossover of a plant g.
 
     The arguments of `laws` are a `Place` and the sampling interval [s] (None: continuous). For each loop, tuning selects the law with the
-    lowest peak of S. If `notched` is true, tuning adds notches at modes that need them. `others` names the kinds of controllers that an
-    error suggests if the specification is not met. `steps` are the ratios of successive trial bandwidths: the first above 5 % of the first
-    mode's frequency, the second below.
+    lowest peak of the sensitivity S. If `notched` is true, tuning adds notches at modes that need them. If no law meets the specification,
+    the error message suggests the kinds of controllers in `others`. `steps` are two ratios of successive trial bandwidths, for bandwidths
+    above and below 5 % of the first mode's frequency.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Family:
 
 
 def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:
-    """Solve |k/s - Q| |g| = 1 for the integral gain k [1/s] at s = j `turning`, with the pose `feedback` Q; None without a solution.
+    """Solve |k/s - Q| |g| = 1 at s = j `turning` for the integral gain k [1/s], with pose feedback Q and plant gain g; or return None.
 
     >>> round(tracking_gain(Place(1.0, 0.5 + 0.0j, 1.0, None), 2.0, 0.0j), 9)
     4.0

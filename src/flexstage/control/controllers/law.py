@@ -36,8 +36,8 @@ class Law(Protocol):
 def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, kept: Sequence[bool]) -> System:
     """Construct a control law's system from A (n, n), B (n, 3), C (1, n), D (1, 3); with `step` [s] it is discretised by Tustin's rule.
 
-    Keeps only the states marked in `kept`. In a sampled law the applied input acts one sample later, because it is known only after the
-    command.
+    The inputs are those of `Law`. Only states marked in `kept` remain. In a sampled law the applied input acts one sample later, because it
+    is known only after the command.
 
     >>> one, none = np.eye(1), np.zeros((1, 3))
     >>> found = law_system(0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none, 0.1, kept=[True])
@@ -76,7 +76,7 @@ def corner_findings(kind: str, noun: str, corner: float, step: float | None, oth
 
 
 def tracking_rate(time: float, step: float | None) -> float:
-    """Compute the anti-windup rate 1/T_t [1/s] from a tracking time T_t [s], which is raised to at least one sample.
+    """Compute the anti-windup rate 1/T_t [1/s] from a tracking time T_t [s]. One sample replaces a shorter tracking time.
 
     >>> tracking_rate(0.5, None), tracking_rate(0.01, 0.1)
     (2.0, 10.0)

@@ -31,9 +31,9 @@ class Loops:
 
 @check_arguments
 def actuator_loops(coordinates: Coordinates) -> Loops:
-    """Define one loop for each actuator, with `sense` = R_a and `drive` = I.
+    """Define one loop for each actuator, with `sense` = R_a and `drive` = I; R_a maps coordinates to strokes.
 
-    Raises `DesignError` for more actuators than coordinates: the gauges could not observe all integrators.
+    Raises `DesignError` if there are more actuators than coordinates, because the gauges could not observe all integrators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -52,7 +52,7 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
 def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Loops:
     """Define one loop for each platform motion: `sense` = S, `drive` = R_a S^-1; S multiplies rotations by the stage's length.
 
-    `strokes` (n, f) replaces R_a, for example by gains that correct lost motion.
+    R_a maps coordinates to strokes. `strokes` (n, f) replaces R_a, for example with gains that correct lost motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -68,9 +68,9 @@ def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Lo
 def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
     """Select the modes for modal loops: one per coordinate, with the largest contributions to static compliance along the coordinates.
 
-    The contribution of a mode to the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths). The mode with the largest
-    contribution is selected first. For each further mode, only the component independent of the selected modes counts. Returns ascending
-    indices. Raises `DesignError` for too few modes.
+    A mode with the platform twist phi and the angular frequency omega contributes |S phi|^2 / omega^2 to the compliance; S converts
+    rotations to lengths. The mode with the largest contribution is selected first. For each further mode, only the component of S phi
+    orthogonal to the selected modes counts. Returns ascending indices. Raises `DesignError` for too few modes.
 
     >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.analysis.dynamics.modes import modes
@@ -103,10 +103,10 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
 def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None = None) -> Loops:
     """Define one loop for each of the platform's modes, with `sense` = Phi^-1 and `drive` = R_a Phi.
 
-    `shapes` (6, f) are the platform's twists in these modes, columns of `Modes.platform_shapes` (`loop_modes` selects them), of any scale.
-    With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2). Lost motion and the
-    masses of the actuation units cause crosstalk. `strokes` (n, f) replaces R_a. Raises `DesignError` for shapes that do not span the
-    coordinates.
+    `shapes` (6, f) are the platform's twists in these modes, of any scale: columns of `Modes.platform_shapes` that `loop_modes` selects.
+    Phi are their components along the coordinates, scaled. R_a maps coordinates to strokes; `strokes` (n, f) replaces it. With massless
+    links the loops are exactly decoupled oscillators with a static gain of 1. Lost motion and the masses of the actuation units cause
+    crosstalk. Raises `DesignError` for shapes that do not span the coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates

@@ -24,8 +24,8 @@ class Weights:
     """Weights of the regulator's cost, the integral of w^2 |z|^2 + p |y|^2 + |u|^2, where z is the integral of the loop's error.
 
     y is the pose in lengths (rotations times the stage's length), u are the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1] are
-    common to all coordinates, or specified for each coordinate. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u'
-    = w e).
+    common to all coordinates, or specified for each coordinate. For p = 0 and a static plant of gain 1, the controller is u' = w e with the
+    error e; its crossover frequency is exactly `bandwidth`.
     """
 
     bandwidth: float | tuple[float, ...]
@@ -34,7 +34,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class Disturbances:
-    """White-noise densities that the observer assumes: `strokes` [m/Hz^(1/2)] for every command, and `gauges` for each gauge by name."""
+    """White-noise densities that the observer assumes: `strokes` [m/Hz^(1/2)] of every command, and `gauges` of each gauge by name."""
 
     strokes: float
     gauges: Mapping[str, float]
@@ -44,11 +44,12 @@ class Disturbances:
 class LQG:
     """LQG controller with integrators, for a model: u = -K x^ + K_z z + N r.
 
-    The estimate is x^ = x- + M (y - C x-), with the prediction x- = A x^ + B u from the previous sample. The integral z of the error e is
-    updated by z+ = z + T e. The sampled `model` has inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral`
-    K_z (n, f), `observer` M (s, f). `feedforward` (n, f) maps a reference to static strokes and determines N (default: no feedforward).
-    `tracking` [s] is the anti-windup time of the integrators. The observer needs none, because it uses the applied strokes. `weights` are
-    the design weights, `expected` the disturbances assumed by the observer, if known.
+    u are the commands, x^ the estimated states, z the integral of the error e, and r the reference. The matrices A, B and C belong to the
+    sampled `model` from u = `command.<actuator>` to y = `pose.<c>`. The estimate is x^ = x- + M (y - C x-), with the prediction x- = A x^ +
+    B u from the previous sample. The next z is z + T e, with the sampling period T. `regulator` is K (n, s), `integral` K_z (n, f),
+    `observer` M (s, f). `feedforward` (n, f) maps a reference to static strokes and determines N (default: no feedforward). `tracking` [s]
+    is the anti-windup time of the integrators. The observer uses the applied strokes, and needs no anti-windup. `weights` are the design
+    weights. `expected` are the disturbances that the observer assumes, if known.
     """
 
     model: System
@@ -77,8 +78,8 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
 
     K and K_z solve the algebraic Riccati equation of the model with integrators of the error. The observer gain solves the Riccati equation
     of the model with its noise (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). Noise of one-sided density G is white up to half
-    the sampling rate: a sample has the variance G^2/(2 T). Raises `DesignError` for a continuous model, gauges without noise, and an
-    undamped mode that is not controllable or observable.
+    the sampling rate: with the sampling period T, a sample has the variance G^2/(2 T). Raises `DesignError` for a continuous model, gauges
+    without noise, and an undamped mode that is not controllable or observable.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -122,7 +123,7 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
 
 
 def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
-    """Compute the gain M (s, f) of the Kalman filter. If D transmits noise of the strokes, it correlates state and output noise.
+    """Compute the gain M (s, f) of the Kalman filter. Stroke noise that the model transmits directly correlates state and output noise.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -227,7 +228,7 @@ def _sampled_system(control: LQG) -> System:
 
 
 def with_feedforward_states(control: System, given: LQG) -> System:
-    """Add reference feedforward to a controller: the static strokes F r, plus K x for the states x that these strokes cause.
+    """Add feedforward of the reference r: the static strokes F r, plus K x for the static states x that they cause (regulator gain K).
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop

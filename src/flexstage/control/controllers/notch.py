@@ -24,8 +24,8 @@ class Notch(CheckedFields):
     """Notch filter (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
 
     `damping` zeta is the damping ratio of the poles. The gain is below 1/sqrt(2) in a band with a width of about 2 zeta times the
-    frequency. Depth zeta_m / zeta cancels a mode of damping ratio zeta_m: the notch's poles replace the mode's poles. Raises `DesignError`
-    for invalid numbers.
+    frequency. A depth of zeta_m / zeta cancels a mode with the damping ratio zeta_m: the notch's poles replace the mode's poles. Raises
+    `DesignError` for invalid numbers.
 
     >>> from flexstage.control.controllers.notch import Notch
     >>> gains = Notch(frequency=110.9, depth=0.02).system().transfer(np.array([0.0, 110.9]))
@@ -68,9 +68,9 @@ class Notch(CheckedFields):
 
 @check_arguments
 def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> Notch:
-    """Compute the notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`: depth ratio / `damping`.
+    """Compute the notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`. Its depth is `ratio` / `damping`.
 
-    A mode with more damping than the notch's poles needs no notch; the result has depth 1.
+    A mode with more damping than the notch's poles needs no notch: the result then has depth 1.
 
     >>> notch_of_mode(110.9, 0.01).depth.__round__(4)
     0.0143

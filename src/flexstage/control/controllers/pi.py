@@ -16,11 +16,11 @@ from flexstage.control.systems.system import System
 
 @dataclass(frozen=True)
 class PI(CheckedFields):
-    """PI controller k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
+    """PI controller k_p + k_i / s from a loop's error e [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
 
-    Under saturation the integrator follows the applied input with the time constant `tracking` T_t [s]: x' = k_i e + (applied -
-    commanded)/T_t. This is back-calculation (Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). `tracking` is by default (1 +
-    k_p)/k_i, the time constant of the loop around a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
+    Under saturation the integrator's state x follows the applied input with the time constant `tracking` T_t [s]: x' = k_i e + (applied -
+    commanded)/T_t. This is back-calculation (Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). The default of `tracking` is
+    (1 + k_p)/k_i, the time constant of the loop with a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
 
     >>> control = PI(proportional=0.5, integral=100.0)
     >>> control.tracking_time, control.system().transfer(np.array([100.0 / (2.0 * np.pi)]))[0, 0, 0].round(12)  # 0.5 + 100/(100j)

@@ -26,10 +26,11 @@ _OF_RATE = 0.4
 class PositiveFeedback:
     """Positive position and velocity feedback around an integrator: u = (v s + b w^2) / (s^2 + 2 z w s + w^2) y + (k_t / s) e.
 
-    The fields are `position` b [1], `velocity` v [1/s], `frequency` w / (2 pi) [Hz], `damping` z and `tracking` k_t [1/s]. Without v, the
-    law is positive position feedback (Fanson & Caughey, AIAA Journal 28 (1990) 717). The loop is then stable around an undamped mode of
-    static gain g if b g < 1. With v, the law is positive velocity and position feedback (Bhikkaji, Ratnam, Fleming & Moheimani, IEEE
-    Transactions on Control Systems Technology 15 (2007) 853). Raises `DesignError` for invalid numbers.
+    y is the loop's pose [m], e its error, u its command. The fields are `position` b [1], `velocity` v [1/s], `frequency` w / (2 pi) [Hz],
+    `damping` z and `tracking` k_t [1/s]. Without v, the law is positive position feedback (Fanson & Caughey, AIAA Journal 28 (1990) 717).
+    This feedback of an undamped mode with the static gain g is stable if b g < 1. With v, the law is positive velocity and position
+    feedback (Bhikkaji, Ratnam, Fleming & Moheimani, IEEE Transactions on Control Systems Technology 15 (2007) 853). Raises `DesignError`
+    for invalid numbers.
 
     >>> control = PositiveFeedback(position=0.8, frequency=100.0, damping=0.8)
     >>> control.system().transfer(np.array([1e-3]))[0, 0, 1].real.round(6).item()  # b at rest
@@ -71,8 +72,8 @@ class PositiveFeedback:
 def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
     """Place the poles of an undamped mode and of the filter at the roots of (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w.
 
-    The mode w^2 g / (s^2 + w^2), with g = `static`, and the filter keep the frequency w and get equal decay rates. Four parameters place
-    the four poles (Bhikkaji, Ratnam, Fleming & Moheimani 2007).
+    The mode is w^2 g / (s^2 + w^2), with g = `static`. Both pole pairs get the damped frequency w and the decay rate sigma. The filter's
+    four parameters determine the four poles (Bhikkaji, Ratnam, Fleming & Moheimani 2007).
 
     >>> law = place_poles(100.0, 0.2)
     >>> w = 200.0 * np.pi

@@ -26,7 +26,8 @@ class Prefilter(CheckedFields):
 
     Without a `lead` the numerator is 1. The static gain is 1. The prefilter is the second degree of freedom of a loop (Astrom and
     Haegglund, Advanced PID Control, 2006, section 3.4). A control law with strong integral action has a zero at s = -k_i/k_p, which causes
-    overshoot. The prefilter F reduces the overshoot, but does not change S, margins or noise. Raises `DesignError` for invalid numbers.
+    overshoot. The prefilter F reduces the overshoot, but does not change sensitivity, margins or noise. Raises `DesignError` for invalid
+    numbers.
 
     >>> gains = Prefilter(frequency=90.0, damping=1.0).system().transfer(np.array([0.0, 90.0]))
     >>> abs(gains.ravel()).round(12).tolist()  # 1/(2 zeta) there

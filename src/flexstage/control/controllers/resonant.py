@@ -63,10 +63,10 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """Compute gains that give an undamped mode at `frequency` [Hz] the damping ratio zeta = `damping`, the highest that d permits.
+    """Compute gains that give an undamped mode at `frequency` [Hz] the damping ratio zeta = `damping`, which is the maximum for this d.
 
-    The gains are d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1) and k d = w_p (1 + 2 zeta)^(1/2) (Namavar, Fleming & Aphale 2014). Here w_p is
-    the mode's angular frequency, g = `static` the plant's static gain, and k_t [1/s] is `tracking`. Raises `DesignError` for numbers that
+    The mode's angular frequency is w_p, and the plant's static gain is g = `static`. Then k d = w_p (1 + 2 zeta)^(1/2) and d = g (1 + 2
+    zeta)^2 / ((1 + 2 zeta)^2 - 1) (Namavar, Fleming & Aphale 2014). The gain k_t [1/s] is `tracking`. Raises `DesignError` for numbers that
     are not positive.
 
     >>> control = resonant_law(100.0, damping=0.5 * (2.0**0.5 - 1.0))

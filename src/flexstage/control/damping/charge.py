@@ -21,11 +21,12 @@ from flexstage.models.linear.model import Channel, LinearModel
 
 @dataclass(frozen=True, eq=False)
 class ChargedStacks:
-    """Stacks of `actuators` at constant charge: their stiffness is higher by the factors `stiffer` (n,) above the corner frequency.
+    """Stacks of `actuators` at constant charge: above the corner frequency they are stiffer than at constant voltage.
 
-    The factor is 1/(1 - k^2), with the coupling k of a stack. `corners` (n,) [Hz] are the corner frequencies below which the drive acts as
-    a voltage drive. `residual_hysteresis` (n,) are the fractions of hysteresis and creep that remain above the corners. The plant's modes
-    are at `by_volts` (k,) [Hz] with constant voltage, and at `by_charge` (k,) [Hz] with constant charge.
+    `stiffer` (n,) is the ratio of the stiffnesses, 1/(1 - k^2), with the electromechanical coupling factor k of a stack. Below the
+    frequencies `corners` (n,) [Hz], the drive acts as a voltage drive. Above them, the fractions `residual_hysteresis` (n,) of hysteresis
+    and creep remain. `by_volts` (m,) and `by_charge` (m,) [Hz] are the plant's modal frequencies at constant voltage and at constant
+    charge.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -44,7 +45,7 @@ class ChargedStacks:
 
     @property
     def rise(self) -> Annotated[Array, INNER, Heading("change", digits=3, unit="%")]:
-        """Relative change (k,) of the modes' frequencies."""
+        """Relative change (m,) of the modes' frequencies."""
         return self.by_charge / self.by_volts - 1.0
 
 
@@ -52,9 +53,9 @@ def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mappin
     """Return the model with the stacks of `legs` at constant charge, which increases their stiffness.
 
     A stack with elongation u, tension F, voltage V and charge Q has the stiffness k at constant voltage, the free stroke d per volt, and
-    the capacitance C without load: u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active Structures, 2018, ch. 4). With
-    the coupling kappa, kappa^2 = d^2 k / C, it follows that u = (1 - kappa^2) F/k + (d/C) Q. The stiffness at constant charge is therefore
-    k / (1 - kappa^2). The free stroke (d/C) Q equals d V for the voltage V that would cause the charge Q in the unloaded stack.
+    the capacitance C without load: u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active Structures, 2018, ch. 4).
+    Elimination of V gives u = (1 - kappa^2) F/k + (d/C) Q, with the coupling factor kappa, kappa^2 = d^2 k / C. The stiffness at constant
+    charge is therefore k / (1 - kappa^2). The free stroke (d/C) Q equals d V for the voltage V that charges the unloaded stack to Q.
     """
     stiffness, output, through = dict(model.stiffness), np.array(model.output, dtype=float), np.array(model.feedthrough, dtype=float)
     for each in legs:
@@ -71,12 +72,13 @@ def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mappin
 
 
 def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, ChargeDrive], kept: tuple[str, ...] = ()) -> Plant:
-    """Add charge leakage below a corner frequency to the plant of stacks at constant charge; exact at every frequency.
+    """Add charge leakage to a plant with stacks at constant charge: below a corner frequency, they behave as at constant voltage.
 
-    Symbols are those of `at_constant_charge`. The drive imposes the current (s C + 1/R) v that a voltage v would cause in the unloaded
-    stack with the leakage resistance R (Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, ch. 12). With the
-    corner w_0 = 1/(R C), the elongation is then u = F/k (1 - kappa^2 s/(s + w_0)) + d v: the stroke at constant charge plus kappa^2 w_0/(s
-    + w_0) F/k. `legs` have the stiffness k at constant voltage. The result has only the link forces named in `kept`.
+    The result is exact at every frequency. Symbols are those of `at_constant_charge`. The drive imposes the current (s C + 1/R) v that a
+    voltage v would cause in the unloaded stack with the leakage resistance R (Fleming & Leang, Design, Modeling and Control of
+    Nanopositioning Systems, 2014, ch. 12). With the corner w_0 = 1/(R C), the elongation is u = (1 - kappa^2 s/(s + w_0)) F/k + d v: the
+    elongation at constant charge plus kappa^2 w_0/(s + w_0) F/k. `legs` have the stiffness k at constant voltage. The result has only the
+    link forces named in `kept`.
     """
     inner = [_leak(each, drives[each.actuator]) for each in legs]
     gone = {f"{each.link}.fx" for each in legs} - {f"{name}.fx" for name in kept}

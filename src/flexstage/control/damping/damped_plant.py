@@ -29,9 +29,8 @@ _SLOW, _LINES = 1e-3, 200
 class DampedMode:
     """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, `damped_frequency` and `damped_ratio` with them.
 
-    `zero` z [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio with one leg or decoupled legs,
-    (w - z)/(2 z), with the `frequency` w. `alone` is the damping ratio of the mode with the present gain, without the effect of other
-    modes.
+    `zero` z [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio for one leg or decoupled legs:
+    (w - z)/(2 z), with w = `frequency`. `alone` is the damping ratio that the present gain would give this mode if it were the only mode.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -59,10 +58,10 @@ class ActiveDamping:
     """Integral force feedback in the `legs` with `gain` [1/s]; its high-pass filter has a `corner` frequency [Hz] and an `order`.
 
     `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the fraction of the platform's static stiffness that
-    remains with the feedback. `softest` is the lowest remaining fraction of the dynamic stiffness below half the first mode's frequency; it
-    occurs at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below` [Hz]. `rate` [Hz] is the sampling rate,
-    absent for analogue feedback. `reached` is the lowest damping ratio of the modes with the largest residues; as many modes count as the
-    loop has coordinates.
+    remains with the feedback. `softest` is the lowest fraction of the dynamic stiffness that remains at frequencies up to half the first
+    mode's; it occurs at `softest_at` [Hz]. Below the frequency `kept_below` [Hz], a leg keeps more than half its axial stiffness. `rate`
+    [Hz] is the sampling rate, None for analogue feedback. `reached` is the lowest damping ratio of the dominant modes: those with the
+    largest residues, as many as the loop has coordinates.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -95,8 +94,8 @@ class ActiveDamping:
 def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Plant:
     """Close the inner loops of a plant. The plant's outputs must include the link forces `<link>.fx`, which the result omits.
 
-    The strokes of the inner loops are added before the amplifiers; they are also outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>`
-    [N] are noise added to the measured tension.
+    The inner loops add their strokes to the inputs of the amplifiers; these strokes are also outputs `added.<actuator>` [m]. The inputs
+    `sensed.<actuator>` [N] are noise, added to the measured tensions.
     """
     inner = [
         law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"{ADDED}.{each.actuator}", "m")) for each in legs
@@ -118,7 +117,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def around_legs(
     given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
 ) -> System:
-    """Connect an inner system to each leg: from `tension.<actuator>` [N] (with one of the inputs `heard` as noise) to an added stroke."""
+    """Connect an inner system to each leg, from its tension [N] to an added stroke. The inputs `heard` are noise, added to the tensions."""
     entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
     for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
         links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
@@ -141,7 +140,7 @@ def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
 
 
 def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains: Array) -> Array:
-    """Compute the poles [1/s] of the plant's modes (columns) for increasing `gains` (rows), each tracked from its mode (root locus)."""
+    """Compute the root locus of the plant's modes (columns): their poles [1/s], tracked for increasing `gains` (rows)."""
     modes, found = _modal_poles(given), []
     for gain in gains:
         poles = close_damping(given, replace(law, gain=float(gain)), legs).system.poles
@@ -158,10 +157,10 @@ def _modal_poles(given: Plant) -> Array:
 
 
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:
-    """Compute the lowest gain [1/s] that gives the modes with the largest residues the damping ratio `wanted`.
+    """Compute the lowest gain [1/s] that gives all dominant modes (see `dominant_modes`) at least the damping ratio `wanted`.
 
-    The loop has as many of these modes as coordinates. If no gain reaches `wanted`, returns the gain of maximum damping. A gain at which
-    the inner loops are unstable is reduced. Raises `DesignError` if the inner loops are unstable even at the lowest gain tried.
+    If no gain reaches `wanted`, returns the gain of maximum damping. If the inner loops are unstable at this gain, it is reduced. Raises
+    `DesignError` if the inner loops are unstable even at the lowest gain tried.
     """
     dominant = dominant_modes(given)
     scale = 2.0 * np.pi * float(np.median(given.frequencies[dominant]))
@@ -183,7 +182,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
 
 
 def dominant_modes(given: Plant) -> Array:
-    """Return the indices of the modes with the largest residues in a plant's loop, as many as it has coordinates."""
+    """Return the indices of the dominant modes: those with the largest residues in a plant's loop, as many as there are coordinates."""
     return np.argsort(-resonances(given))[: len(given.coordinates.names)]
 
 
@@ -192,7 +191,7 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """Summarise the inner loops' effect on modes and platform stiffness; `pairs` are modes with and without axial leg stiffness."""
+    """Summarise the inner loops' effect on modes and platform stiffness. `pairs` pairs the modes with and without axial leg stiffness."""
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []

@@ -14,7 +14,7 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True)
 class ForceFeedback:
-    """Integral force feedback: the stroke is G(s) times the leg's tension divided by its axial stiffness.
+    """Integral force feedback: the stroke is G(s) F / k, with the tension F and the axial stiffness k of a leg.
 
     The law G(s) is g / (s + a) for `order` 1 and g s / (s + a)^2 for `order` 2. `gain` is g [1/s], and `corner` is the corner frequency a /
     (2 pi) [Hz] of the high-pass filter (Preumont, Dufour & Malekian, J. Guid. Control Dyn. 15 (1992) 390; Preumont, Vibration Control of
@@ -73,7 +73,7 @@ class ForceFeedback:
 
     @property
     def kept_below(self) -> float:
-        """Frequency [Hz] below which a leg keeps over half its stiffness: a^2 / (2 pi g) for order 2; 0 (g > a) or infinite for order 1."""
+        """Frequency [Hz] below which a leg keeps over half its stiffness. Order 2: a^2 / (2 pi g); order 1: 0 if g > a, else infinite."""
         turning = 2.0 * np.pi * self.corner
         if self.order == 1:
             return 0.0 if self.gain > turning else np.inf
@@ -94,7 +94,7 @@ def most_damping(frequency: float, zero: float) -> float:
 
 
 def damping_of_pair(law: ForceFeedback, frequency: float, zero: float) -> complex:
-    """Compute the pole [1/s] of an undamped mode with feedback, tracked while the gain grows from zero to that of the law.
+    """Compute the pole [1/s] of an undamped mode with feedback. It is tracked while the gain increases from zero to the gain of `law`.
 
     The pole is a root s of 1 + G(s) (s^2 + z^2) / (s^2 + w^2) = 0, with the angular frequencies w and z of `most_damping`.
 

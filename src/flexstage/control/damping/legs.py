@@ -36,11 +36,11 @@ class Leg:
 
 
 def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (), asked: str = "damping") -> tuple[Leg, ...]:
-    """Return the legs of all actuators that impose a stroke along their link, each with a strain gauge or a force sensor at its stack.
+    """Return the legs of all actuators that impose a stroke along their link. Each leg has a force sensor at its stack, or a strain gauge.
 
-    With `gauges`, returns only the legs that have a gauge. A gauge on a stack also reads the free stroke: the commanded stroke is
-    subtracted from the reading. A gauge elsewhere in the leg reads only the tension. Raises `DesignError` at the key `asked` for stages
-    without stacks, models without link forces, and gauges outside the legs.
+    With `gauges`, returns only the legs that have one of these strain gauges. A gauge on a stack also reads the free stroke; therefore the
+    commanded stroke is subtracted from the reading. A gauge elsewhere in the leg reads only the tension. Raises `DesignError` for stages
+    without stacks, models without link forces (both at the key `asked`), and gauges outside the legs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -72,7 +72,7 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (),
 
 
 def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 0.0) -> LinearModel:
-    """Multiply the stacks' axial stiffness in the legs by the fraction `left`, at least 1e-9 (free motions then have nearly 0 Hz).
+    """Multiply the axial stiffness of the legs' stacks by `left`, but at least by 1e-9. Free motions then have a frequency of nearly 0 Hz.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -13,12 +13,12 @@ from flexstage.control.damping.legs import Leg
 
 @dataclass(frozen=True, eq=False)
 class SampledLegs:
-    """Force feedback in the legs of `actuators` (m,), sampled every `step` [s]: `turns` samples during one sample of the pose loop.
+    """Force feedback in the legs of `actuators` (m,), sampled every `step` [s], `turns` times during one sample of the pose loop.
 
-    The law G(s) of `ForceFeedback` is discretised by Tustin's rule. The tensions are multiplied by `gains` (m,) [m/N], g / (a k) for the
-    gain g, the corner a [1/s] and the axial stiffness k of a leg, and filtered by the low-pass filter a / (s + a). For order 2, the result
-    of a second low-pass filter is subtracted from the output of the first filter. The computation is accurate in single precision even with
-    slow poles. `share` is a T / (2 + a T), with T = `step`.
+    The law G(s) of `ForceFeedback` is discretised by Tustin's rule. Each tension is multiplied by its gain and filtered by the low-pass
+    filter a / (s + a). `gains` (m,) [m/N] are g / (a k), with the gain g, the corner a [1/s] and a leg's axial stiffness k. For order 2, an
+    equal second filter follows, and its output is subtracted from its input. The computation is accurate in single precision even if a T is
+    small. `share` is a T / (2 + a T), with T = `step`.
     """
 
     actuators: tuple[str, ...]
