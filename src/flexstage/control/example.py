@@ -17,7 +17,7 @@ from flexstage.models.lumped import lumped
 def integral(given: Plant, gain: float) -> System:
     """Construct an integral controller of all coordinates, sampled by the backward rectangle rule: u' = `gain` [1/s] R_a e.
 
-    u are the commands, e the errors of the coordinates, and R_a are the strokes per unit of each coordinate.
+    u are the commands, e the errors of the coordinates, and R_a the strokes per unit of each coordinate.
 
     >>> found = integral(integral_loop().plant, 100.0)
     >>> found.input_names, found.D.tolist()  # 100/s for 0.1 ms

@@ -53,7 +53,7 @@ _UNITS = {"bandwidth": "Hz", "resistance": "ohm", "current": "A"}
 
 @dataclass(frozen=True)
 class LoopOptions:
-    """Loop set-up from the command line."""
+    """Set-up of a loop, specified by options of a command."""
 
     setup: Setup = None
     controller: Annotated[

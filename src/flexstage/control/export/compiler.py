@@ -31,7 +31,7 @@ def find_compiler() -> tuple[str, ...] | None:
 
 
 def compile_source(what: str, sources: Mapping[str, str], flags: tuple[str, ...]) -> bytes:
-    """Compile `sources` (text by file name) to a shared library, in an empty folder, so that the library contains no file paths.
+    """Compile `sources` (text by file name) to a shared library. An empty working folder prevents file paths in the library.
 
     Raises `DesignError` without a compiler, or for sources that do not compile.
 

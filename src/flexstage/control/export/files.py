@@ -72,11 +72,11 @@ def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 
 
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
-    """Generate the controller of a loop as C99; returns the texts of `controller.c` and its header, by file name.
+    """Generate the controller of a loop as C99. Returns the texts of the source and its header, by file name.
 
     The stem of the file name is the prefix of all C names.
 
-    With `legs` the code includes the force feedback of these legs. Raises `DesignError` for a name without `.c` or a reserved name.
+    With `legs`, the code includes the force feedback in these legs. Raises `DesignError` for a name without `.c` or a reserved name.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -106,7 +106,7 @@ def hardware_files(
     about: str = "",
     legs: SampledLegs | None = None,
 ) -> dict[Path, str]:
-    """Generate a controller for hardware (see `hardware_code`): texts by file of `controller.c`, its header and `controller_test.c`.
+    """Generate a controller for hardware (see `hardware_code`). Returns the texts of source, header and test program, by file name.
 
     The test replays a simulation of the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad].
     Raises `DesignError` for a name without `.c` or a reserved name.
@@ -159,7 +159,7 @@ def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: b
 
 @check_arguments
 def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
-    """Write a plant as MATLAB file (see `plant_file`); raises `DesignError` if it cannot be written or lacks the ending `.mat`.
+    """Write a plant as MATLAB file (see `plant_file`). Raises `DesignError` for a name without `.mat`, and if the file cannot be written.
 
     >>> import tempfile
     >>> from flexstage.control.example import integral_loop

@@ -74,7 +74,7 @@ def _extremes(volts: Array) -> list[int]:
 
 
 def record_findings(volts: Array, strokes: Array) -> list[Finding]:
-    """Check a record (k,) of voltage [V] and stroke [m] of a stack for hysteresis. Returns the findings of the first failed check.
+    """Check that a record (k,) of a stack's voltage [V] and stroke [m] shows hysteresis. Returns the findings of the first failed check.
 
     >>> record_findings(np.arange(100.0), 1e-7 * np.arange(100.0))[0].what
     'the voltage changes from 0 V to 99 V without reversal: the record cannot show hysteresis'

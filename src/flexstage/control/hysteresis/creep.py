@@ -23,8 +23,8 @@ from flexstage.models.linear.model import Channel
 class LogCreep(CheckedFields):
     """Logarithmic creep w(t) = w_0 (1 + gamma log10(t/t_0)) after a step at t = 0: `rate` gamma per decade, `reference` t_0 [s].
 
-    w_0 is the stroke at t_0. The law is valid from about t_0 (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440). The stroke of this
-    law is unbounded for very short and very long times.
+    w_0 is the stroke at t_0. The law is valid for times above about t_0 (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440). It gives
+    an unbounded stroke at very short and very long times.
     """
 
     rate: Annotated[float, Heading("creep per decade", digits=3, unit="%")]

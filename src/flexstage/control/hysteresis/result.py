@@ -20,7 +20,7 @@ SMALL_ERROR = Graded(0.02)
 
 @dataclass(frozen=True)
 class Trial:
-    """One tried model size: numbers of `plays` and envelope `pieces`, and `reach`; with its error.
+    """Tried model size (numbers of `plays` and of envelope `pieces`, and `reach`), with its error.
 
     All thresholds are below `reach` times the voltage range. `error` is the cross-validation error, divided by the stroke. Several fits
     each exclude one part of the record; the rms error is computed over the excluded parts.
@@ -51,10 +51,11 @@ class Plays:
 class IdentifiedHysteresis(InNotebook):
     """Hysteresis model identified from a record, with its accuracy.
 
-    Errors and the width are divided by `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are errors over
-    the samples from `known_from`, which do not depend on the unknown history. `validation` is the rms error on parts of the record that
-    were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the recorded voltage range;
-    `inner` is the number of branches shorter than 80 % of the recorded range. `volts`, `strokes` and `modelled` (k,) are the samples used.
+    Errors and the width are divided by `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are the rms error
+    and the largest error from sample `known_from` on; these samples do not depend on the unknown history. `validation` is the rms error on
+    parts of the record that were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the
+    recorded voltage range; `inner` is the number of branches shorter than 80 % of the recorded range. `volts`, `strokes` and `modelled`
+    (k,) are the samples used.
     """
 
     model: Annotated[PrandtlIshlinskii, INNER]

@@ -154,7 +154,7 @@ def dumps_hysteresis(stack: StackHysteresis) -> str:
 def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
     r"""Parse the text of a hysteresis file; `where` is the file's name in findings.
 
-    Raises `DesignError` with all errors of the file, also for an invalid model.
+    Raises `DesignError` with all errors of the file, including those of an invalid model.
 
     >>> loads_hysteresis('format = "flexstage hysteresis 1"\nthresholds = ["0 V"]\nweights = ["150 nm/V"]').weights
     (1.5e-07,)
@@ -179,7 +179,7 @@ def hysteresis_schema() -> dict[str, Any]:
 
 @check_arguments
 def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Path:
-    """Write a hysteresis file and return its path. Raises `DesignError` if it cannot be written.
+    """Write a hysteresis file and return its path. Raises `DesignError` if the file cannot be written.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

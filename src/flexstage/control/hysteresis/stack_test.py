@@ -26,7 +26,7 @@ from flexstage.experiment.records.unit import in_si, same_dimension, unit_proble
 
 @dataclass(frozen=True)
 class Channels(CheckedFields):
-    """Channel names of a stack's test. The default channels are the only channel in volts, and the only channel in a unit of length."""
+    """Channel names of a stack's test. Defaults: the only channel in volts, and the only channel in a unit of length."""
 
     volts: str | None = None
     stroke: str | None = None
@@ -64,7 +64,7 @@ class StackTest(InNotebook):
 
     @property
     def valid_samples(self) -> Array:
-        """Samples (m,) that do not depend on the unknown history; errors are computed from these samples."""
+        """Indices (m,) of the samples that do not depend on the unknown history. Errors are computed from these samples."""
         return np.arange(self.hysteresis.known_from, len(self.inverse_volts))
 
     @property
@@ -78,7 +78,7 @@ class StackTest(InNotebook):
 
     @property
     def inverse_rms(self) -> Annotated[float, VIEW, Heading("rms error, inverse", digits=3, unit="%", mark=SMALL_ERROR)]:
-        """Rms difference between the voltages of the inverse model and of the test, divided by the voltage range."""
+        """Rms difference between the voltage of the inverse model and the applied voltage, divided by the voltage range."""
         wrong, (low, high) = (self.inverse_volts - self.hysteresis.volts)[self.valid_samples], self.hysteresis.range
         return float(np.sqrt(np.mean(wrong**2))) / (high - low)
 
@@ -88,7 +88,7 @@ def stack_test(record: Record, channels: Channels = Channels(), *, step: Record 
     """Identify hysteresis from a record of voltage and stroke and, optionally, creep from the record of a `step`.
 
     Channels are converted to V and m. `limits` are the actuator's voltage limits. Raises `DesignError` for ambiguous channels, for missing
-    or wrong units, and whenever `identify_hysteresis` or `identify_creep` raises it.
+    or wrong units, and like `identify_hysteresis` and `identify_creep`.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))

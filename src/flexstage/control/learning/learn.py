@@ -31,7 +31,7 @@ BEYOND = Heading("beyond the band", digits=3)
 
 @dataclass(frozen=True, eq=False)
 class RobustBand:
-    """Robust learning `band`. `contraction` is the largest ||Q (I - gain P P_m^-1)|| in the band; Q is its low-pass (see `robust_band`)."""
+    """Robust learning `band` with low-pass filter Q (see `robust_band`). `contraction` is the largest ||Q (I - gain P P_m^-1)||."""
 
     band: Band
     contraction: float
@@ -41,9 +41,9 @@ class RobustBand:
 class LearningResult:
     """Result of iterative learning in passes along the same path, for the loop's `coordinates` in their `units`.
 
-    `rms` (passes, f) is the rms of the measured error over the window, limited to frequencies up to `band` [Hz]: first without learning,
-    then after each learned pass. The last row of `rms` is the rms over four runs with the learned input; `noise` (f,) is the non-repeating
-    component of these runs. `beyond` (f,) is the rms error at frequencies above the band, which is not learned. `contraction` is the
+    `rms` (passes, f) is the rms of the measured error over the window, limited to frequencies up to `band` [Hz]. The first pass is without
+    learning. The last row of `rms` is the rms over four runs with the learned input; `noise` (f,) is the non-repeating component of the
+    errors of these runs. `beyond` (f,) is the rms error at frequencies above the band, where learning fades out. `contraction` is the
     largest contraction factor per pass for relative mode shifts up to `spread`; `gain` is the learning gain.
     """
 
@@ -90,9 +90,9 @@ class LearningResult:
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
     """Find the frequency band in which ||I - gain P P_m^-1|| is at most 0.8, for relative mode shifts up to `spread`.
 
-    P are the loop's responses with shifted modes; P_m are the model's responses. In both, rotations are scaled to lengths. If the norm is
-    below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson, International Journal of Control 75 (2002)
-    1114). The band also ends where ||P_m^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
+    P are the loop's responses with shifted modes, P_m those without shift. The norm is the largest singular value, with rotations scaled to
+    lengths. If it is below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson, International Journal of
+    Control 75 (2002) 1114). The band also ends where ||P_m^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
     """
     plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)
@@ -125,7 +125,7 @@ def line_grid(closed: Loop, spread: float) -> Array:
 
 
 def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) -> Array:
-    """Compute the poses (n, k) that gauges measure on a true path (n, k); the model's lags are included up to four times `end` [Hz]."""
+    """Compute the poses (n, k) that gauges measure on a true path (n, k). Lags are modelled at frequencies up to four times `end` [Hz]."""
     step = closed.step or 1.0
     frequencies = frequencies_of(wanted, step)
     band = Band(min(4.0 * end, 0.45 / step))
@@ -144,11 +144,11 @@ class LearningSettings:
 
 
 def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
-    """Learn the command path + d for a true path (n, f) at rest at both ends.
+    """Learn the command for a true path (n, f) that is at rest at both ends: the path plus a correction d.
 
-    After each pass, Q (d + gain P_m^-1 e) replaces d: e is the error of the pass, P_m the model's response from reference to measured pose,
-    and Q the low-pass of the robust band. `run(path, number)` simulates pass `number` along a commanded path, and returns the measured
-    poses (n, f). Raises the `DesignError` of `robust_band`.
+    After a pass with the error e, the new correction is Q (d + gain P_m^-1 e). P_m is the model's response from reference to measured pose,
+    and Q the low-pass filter of the robust band. `run(path, number)` simulates pass `number` along a commanded path, and returns the
+    measured poses (n, f). Raises `DesignError` like `robust_band`.
     """
     robust = robust_band(closed, control, lesson.gain, lesson.spread)
     frequencies = frequencies_of(wanted, closed.step or 1.0)
@@ -201,7 +201,7 @@ def _rms(values: Array) -> Array:
 
 
 def inverse_path(closed: Loop, control: System, wanted: Array, spread: float) -> Array:
-    """Compute the command (n, f) for a true path (n, f), at rest at both ends, by the inverse of the model in the robust band."""
+    """Compute the command for a true path (n, f) that is at rest at both ends, with the inverse of the model in the robust band."""
     band = robust_band(closed, control, 1.0, spread).band
     frequencies = frequencies_of(wanted, closed.step or 1.0)
     return through(band.blend(frequencies, lambda lines: np.linalg.inv(motions(closed, lines))), wanted)

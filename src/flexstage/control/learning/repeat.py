@@ -27,15 +27,15 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 
 @dataclass(frozen=True, eq=False)
 class Repeater:
-    """Repetitive controller: the correction d follows from itself and the error e, one period P before, as d = z^-P (W d + L e).
+    """Repetitive controller. The correction is d = z^-P (W d + L e): it follows from correction d and error e one period P before.
 
-    W is the low-pass filter of the `band`, with the taps `keep` (2m+1,). L is the inverse model of the loop times gain, filtered by W, with
-    the taps `teach` (2m+1, f, f). Both filters are noncausal: they also use the following m samples. The taps of both filters include the
-    fractional delay if the `period` P [samples] is not a whole number. `contraction` is the largest singular value of W - G L over all
-    frequencies, with rotations scaled to lengths; G are the loop's responses with shifted modes. With a contraction below 1 the loop is
-    stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, Journal of Dynamic Systems,
-    Measurement, and Control 111 (1989) 353). `amplifies` is the largest amplification between the harmonics without mode shift: the largest
-    singular value of (I + W z) (I + (W - G L) z)^-1 over all frequencies and all z with |z| = 1.
+    W is the low-pass filter of the `band`, with the taps `keep` (2m+1,). L, with the taps `teach` (2m+1, f, f), is the inverse model of the
+    loop, multiplied by the learning gain and filtered by W. Both filters are noncausal: they also use the following m samples. If the
+    `period` P [samples] is not a whole number, the taps include the fractional delay. `contraction` is the largest singular value of W - G
+    L over all frequencies, with rotations scaled to lengths; G are the loop's responses with shifted modes. With a contraction below 1 the
+    loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, Journal of Dynamic
+    Systems, Measurement, and Control 111 (1989) 353). `amplifies` is the largest amplification of errors between the harmonics, without
+    mode shift: the largest singular value of (I - q W) (I - q (W - G L))^-1 over all frequencies and all q with |q| = 1.
     """
 
     period: float
@@ -51,7 +51,7 @@ class Repeater:
         return len(self.keep) // 2
 
     def at(self, frequencies: Array, step: float) -> tuple[Array, Array]:
-        """Compute the responses of the filters W (n,) and L (n, f, f) at frequencies (n,) [Hz], for a period rounded to whole samples."""
+        """Compute the responses of the filters W (n,) and L (n, f, f) at frequencies (n,) [Hz], without the fractional delay."""
         late = np.arange(-self.reach, self.reach + 1) + (np.floor(self.period + 0.5) - self.period)
         turned = np.exp(-2j * np.pi * np.outer(frequencies, late) * step)
         return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
@@ -61,8 +61,7 @@ def repeater(closed: Loop, control: System, period: float, gain: float, spread: 
     """Design the filters for a `period` [s] in the widest band in which errors decrease, for relative mode shifts up to `spread`.
 
     `gain` multiplies the inverse model of the loop. Finite filters also act outside their band; therefore the band is narrower than for
-    iterative learning. Raises the `DesignError` of `robust_band`, or a `DesignError` for a period so short that no usable band contains the
-    first harmonic.
+    iterative learning. Raises `DesignError` like `robust_band`, and for a period so short that no usable band contains the first harmonic.
     """
     step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
@@ -123,8 +122,8 @@ class RepetitiveResult:
 
     `rms` (periods, f) is the rms of the measured error over each `period`, limited to frequencies up to `band` [Hz]; the first period has
     no correction. `beyond` (f,) is the rms error of the last period at frequencies above the band. `contraction` is the largest contraction
-    factor per period for relative mode shifts up to `spread`. `amplifies` is the largest amplification of non-repeating errors, between the
-    harmonics.
+    factor per period for relative mode shifts up to `spread`. `amplifies` is the largest amplification of non-repeating errors (at
+    frequencies between the harmonics).
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -189,8 +188,8 @@ def repeat(
 ) -> RepetitiveResult:
     """Simulate a run along a true path (n, f), with corrections from the errors of previous periods.
 
-    `advance` continues the run with further commanded poses, and returns the measured poses. Only errors within the window of `asked` are
-    used; after the window the correction fades out. Raises the `DesignError` of `repeater`.
+    `advance` continues the run with further commanded poses, and returns the measured poses. Only errors within `asked.window` are used;
+    after this window the correction fades out. Raises `DesignError` like `repeater`.
     """
     found = repeater(closed, control, asked.period, gain, spread)
     target = wanted_readings(closed, control, wanted, found.band.end)

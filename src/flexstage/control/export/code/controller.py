@@ -22,8 +22,9 @@ def controller_code(given: Machine, name: str = "controller", about: str = "") -
 
     Inputs are `reference.<c>` for each coordinate c, and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`,
     `command`, `asked`, `given`, `status` and, if the stacks' ranges are known, `volts`. The strokes `asked` (before the limits) and `given`
-    (applied) are in m from the bias. The integrators use the applied strokes (anti-windup). The last valid value (initially zero) replaces
-    a non-finite reading or reference and a reading beyond the gauge's range; `status` reports this. All states of the program stay finite.
+    (applied) are in m, relative to the bias. The integrators use the applied strokes (anti-windup). The last valid value (initially zero)
+    replaces an invalid input: one that is not finite, or a reading beyond the gauge's range. `status` reports this. All states of the
+    program stay finite.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -161,7 +162,7 @@ def _tables(given: Machine, precision: Precision, *, fixed: bool) -> list[str]:
 def controller_part(given: Machine, core: Core, reading: str, precision: Precision = Precision.DOUBLE, *, fixed: bool = True) -> Code:
     """Generate the tables and statements of a controller for one sample; `reading` is the C name of its readings.
 
-    If not `fixed`, limits and gains are read from the parameters `set`, and `set->enable` = 0 holds the last applied strokes.
+    Unless `fixed`, limits and gains are read from the parameters `set`, and the last applied strokes are held while `set->enable` is 0.
     """
     f, g, m, largest = len(given.names), len(given.gauges), len(given.actuators), number(precision.largest)
     pose = product("seen", "out->pose", [(given.pose, "state->seen")], f)
@@ -228,7 +229,7 @@ def _one_actuator(given: Machine, precision: Precision, *, fixed: bool) -> list[
 
 
 def limited(where: str, most: str, last: str, place: str) -> list[str]:
-    """Generate statements that limit `stroke` to its range, and limit its change from `last`.
+    """Generate statements that limit `stroke` to its range, and limit its change from the stroke `last` of the previous sample.
 
     >>> limited("set->", "most", "last", "i")[0]
     'if (stroke > set->high[i]) stroke = set->high[i];'

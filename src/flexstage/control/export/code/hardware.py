@@ -26,7 +26,7 @@ NO_INVERSE = ("the inverse of this hysteresis model is not supported for hardwar
 
 @dataclass(frozen=True)
 class Hardware:
-    """Generated files, and the cost of a step: additions and multiplications (`flops`), `state`, `parameters` and `tables` [bytes]."""
+    """Generated files. `flops` additions and multiplications are needed per step; `state`, `parameters` and `tables` are memory [bytes]."""
 
     header: str
     source: str
@@ -47,13 +47,14 @@ def hardware_code(
     about: str = "",
     legs: SampledLegs | None = None,
 ) -> Hardware:
-    """Generate the controller of a loop as C99 for hardware; `law` is the controller if it consists of single PI or PID loops.
+    """Generate the controller of a loop as C99 for hardware. `law` is the controller if it is decentralised, else None.
 
     The gains of PI and PID loops are adjustable. Any other controller has modal form with fixed gains. `tested` is a simulation of the
-    loop: the generated test replays its reference and readings and compares the strokes. The step uses no library call and no heap. Sums
-    have a fixed order, rounding is to nearest, multiplications and additions are not fused, subnormals are kept. Finite inputs therefore
-    give the same bits on every IEEE 754 processor. With `legs`, a second function, `<name>_damp`, computes the sampled force feedback, and
-    the test also replays the leg tensions. Raises `DesignError` for an inverse hysteresis, which is not supported in this form.
+    loop: the generated test replays its reference and readings, and compares the strokes. The step uses no library function and no heap
+    memory. Sums have a fixed order, numbers are rounded to nearest, multiplications and additions are not fused, and subnormal numbers are
+    kept. Finite inputs therefore give the same bits on every IEEE 754 processor. With `legs`, a second function, `<name>_damp`, computes
+    the sampled force feedback, and the test also replays the leg tensions. Raises `DesignError` for a loop with inverse hysteresis, which
+    is not supported for hardware.
     """
     if given.compensation is not None:
         raise refuse("--hardware", *NO_INVERSE)

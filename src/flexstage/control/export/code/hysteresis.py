@@ -98,8 +98,8 @@ def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]
 def hysteresis_inverse(name: str, model: PrandtlIshlinskii) -> list[str]:
     """Generate `double <name>_invert(const double *plays, int axis, double value)`: the input for the output `value` at the given plays.
 
-    The model's state does not change. The inverse model's play j is P_j z_j plus the sum of p_i z_i over all i > j (see `inverse_state`).
-    z_i are the model's plays, p_i their weights, and P_j is the sum of the weights up to j.
+    The function does not change the model's state. The inverse model's play output j is P_j z_j plus the sum of p_i z_i over all i > j (see
+    `inverse_state`). z_i are the model's plays, p_i their weights, and P_j is the sum of the weights up to j.
 
     >>> hysteresis_inverse("model", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]))[-1]
     '}'

@@ -44,7 +44,7 @@ class Core:
 
 
 def law_as_c(given: Machine, law: Decentralised | None) -> Core:
-    """Generate the controller of a loop as C: PI or PID loops individually, any other controller in modal form."""
+    """Generate the controller of a loop as C code: individual loops for PI and PID, modal form for any other controller."""
     if law is not None and all(isinstance(each, (PI, PID)) for each in law.laws):
         return _single_loops(given, law)
     linear = parts(replace(given, controller=modal_form(given.controller)))
@@ -53,7 +53,7 @@ def law_as_c(given: Machine, law: Decentralised | None) -> Core:
 
 
 def matrix_core(linear: Parts) -> Core:
-    """Generate any controller from its matrices and the plant's: z+ = A z + ..., command = C z + ..., with states z and next states z+.
+    """Generate any controller from its matrices. The command is C z + ..., the next states are A z + ..., with the states z.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

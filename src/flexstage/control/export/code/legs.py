@@ -21,7 +21,7 @@ _SWEPT, _LARGEST = 200, 1e-6
 
 
 def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
-    """Generate a controller program with inner loops, stepped every `legs.step`; the pose controller's outputs are held in between.
+    """Add inner loops to a controller program, which is then stepped every `legs.step`. Pose control keeps its own, longer sampling period.
 
     Further inputs are `tension.<actuator>` [N], positive in tension. The output `added` contains the strokes of force feedback. The output
     `total` contains the total strokes (controller plus force feedback) within the amplifiers' limits; `volts` are the voltages of `total`.
@@ -101,7 +101,7 @@ def _sample(outer: Program, given: Machine, legs: SampledLegs) -> list[str]:
 
 
 def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Precision) -> Program:
-    """Generate a program with settings, and a separate function `<name>_damp` for the inner loops at their own rate."""
+    """Add a separate function `<name>_damp` to a program with settings. It runs the inner loops at their own rate."""
     m, largest, places = len(given.actuators), number(precision.largest), _places(given, legs)
     volts = [f", double volts[{m}]", "volts[i] = stroke * per_metre[i] + bias[i];"] if has_volts(given) else ["", ""]
     sizes = f"const double tension[{len(places)}], double total[{m}]{volts[0]}"
@@ -163,7 +163,7 @@ def _one_leg(legs: SampledLegs, target: str, gain: str, tension: str, *, place: 
 
 
 def legs_test(given: Machine, legs: SampledLegs, name: str) -> Sequence[str]:
-    """Generate a function that replays a sweep of tensions and returns the largest deviation of the C code's strokes from Python's."""
+    """Generate a C function that replays tensions. It returns the largest deviation from Python, divided by the largest stroke."""
     tensions, wanted = _swept(given, legs)
     m, volts = len(given.actuators), ", volts" if has_volts(given) else ""
     return [

@@ -34,7 +34,7 @@ class Precision(Enum):
 
     @property
     def tolerance(self) -> float:
-        """Tolerance of outputs relative to the largest output: the accumulated rounding error of some hundred samples."""
+        """Tolerance of outputs, divided by the largest output, for rounding errors that accumulate over some hundred samples."""
         return 1e-4 if self is Precision.SINGLE else 1e-11
 
     @property
@@ -44,7 +44,7 @@ class Precision(Enum):
 
 
 def typed(text: str, precision: Precision) -> str:
-    """Convert the constants and types of a C text to the number type of a precision."""
+    """Convert the constants and types in C code to the number type `precision`."""
     if precision is Precision.DOUBLE:
         return text
     marked = re.sub(r"/\*.*?\*/", lambda comment: re.sub(r"(\d)", "\\1\0", comment.group()), text, flags=re.DOTALL)  # no constants
@@ -52,7 +52,7 @@ def typed(text: str, precision: Precision) -> str:
 
 
 def count_constants(lines: Sequence[str]) -> int:
-    """Count the numeric constants of a text.
+    """Count the numeric constants in lines of C code.
 
     >>> count_constants(["{1.0, 2.5e-3}", "x[3]"])
     2

@@ -44,9 +44,9 @@ class Code:
 
 
 def product(name: str, target: str, terms: Iterable[Term], size: int) -> Code:
-    """Generate C code that stores the sum of the products matrix times vector of all `terms` in the `size` elements of `target`.
+    """Generate C code that adds the matrix-vector products `terms`, and stores their sum in the `size` elements of `target`.
 
-    Sparse matrices become single statements, dense matrices become tables, whose names start with `name`.
+    Sparse matrices become single statements. Dense matrices become tables; the names of these tables start with `name`.
 
     >>> product("seen", "y", [(np.array([[2.0, 0.0], [0.0, -1.0]]), "x")], 2).body
     ('y[0] = 2.0 * x[0];', 'y[1] = -x[1];')

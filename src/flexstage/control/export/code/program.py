@@ -26,7 +26,7 @@ class Signal:
 
 @dataclass(frozen=True)
 class State:
-    """Group of state numbers: `field`, sizes of its axes, and the table of initial values (default: zero)."""
+    """Group of state numbers: its `field` in the struct, its array sizes, and the table of its initial values (default: zero)."""
 
     field: str
     sizes: tuple[int, ...]
@@ -35,7 +35,7 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class ProgramSetting:
-    """Group of numbers adjustable between steps: `field`, initial values, and meaning."""
+    """Group of numbers adjustable between steps: its `field` in the struct, its initial values, and its meaning."""
 
     field: str
     values: Array
@@ -56,8 +56,8 @@ class Program:
     """Fixed-step C99 program: the body of `code` is run every `step` [s].
 
     The header declares `<name>_input`, `_output`, `_state`, `<name>_init(state)` and `<name>_step(state, in, out)`. All numbers are
-    doubles, in SI units. The code uses no heap; only tables are static. With `settings`, the init and step functions also have an argument
-    `<name>_parameters` (settings and an enable flag), and call no library function.
+    doubles, in SI units. The code uses no heap memory, and no static variables except tables. With `settings`, the init and step functions
+    have a further argument of the type `<name>_parameters` (settings and an enable flag), and call no library function.
     """
 
     name: str

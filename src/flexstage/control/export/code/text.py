@@ -49,7 +49,7 @@ def indent(lines: Iterable[str], depth: int = 1) -> list[str]:
 
 
 def comment(text: str) -> list[str]:
-    r"""Format a wrapped comment. A comment end inside the text is split, and invisible characters are escaped.
+    r"""Format a wrapped comment. `*/` inside the text is split, and invisible characters are escaped.
 
     >>> comment("low is */ fine"), comment("name \u202e")
     (['/* low is * / fine */'], ['/* name \\u202e */'])

@@ -21,10 +21,9 @@ _FOLDERS = {("linux", "x86_64"): ("linux64", "so"), ("darwin", "x86_64"): ("darw
 def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this computer.
 
-    A communication step of the importer runs all samples of the program within the step. Samples are at multiples of the program's step
-    after the start time. All samples use the inputs set before the communication step. Equal programs and compilers give identical bytes.
-    With `sources_only`, the unit contains no library; otherwise, raises `DesignError` if there is no compiler or FMI 2.0 has no name for
-    this type of computer.
+    The program's samples follow each other at its sampling period, from the start time. A communication step runs all samples that lie
+    within it, with the inputs set before it. Equal programs and compilers give identical bytes. With `sources_only`, the unit contains no
+    library. Otherwise, `DesignError` is raised if there is no compiler, or if FMI 2.0 has no name for this type of computer.
 
     >>> from flexstage.control.export.code.controller import controller_code
     >>> from flexstage.control.example import integral_loop

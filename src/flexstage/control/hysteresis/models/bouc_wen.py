@@ -19,18 +19,18 @@ _TINY = 1e-300
 
 @dataclass(frozen=True, eq=False)
 class BoucWen(Hysteresis):
-    """Bouc-Wen hysteresis w = offset + d v - h,  dh/dt = A dv/dt - beta |dv/dt| h - gamma dv/dt |h|, each (axes,); initially h(v = 0) = 0.
+    """Bouc-Wen hysteresis w = offset + d v - h with dh/dt = A dv/dt - beta |dv/dt| h - gamma dv/dt |h|; initially v = h = 0.
 
-    (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) Here w is the stroke, v the voltage and h the lag; `gain` d and
-    `lag` A are in m/V, `beta` and `gamma` in 1/V. The model is rate independent. For a monotonic voltage change e = |dv|, s = sign(dv) and
-    g = s h: dg/de = A - (beta - gamma) g for g < 0, and A - (beta + gamma) g for g > 0. The exact solution with c = beta - gamma and C =
-    beta + gamma is
+    w is the stroke, v the voltage and h the lag of the stroke (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1). All
+    are (axes,). `gain` d and `lag` A are in m/V, `beta` and `gamma` in 1/V. The model is rate independent. A monotonic voltage change dv
+    has the size e = |dv| and the sign s. With g = s h, c = beta - gamma and C = beta + gamma, dg/de is A - c g for g < 0, and A - C g for g
+    > 0. The exact solution is
 
         g < 0:   g <- g e^{-c e} + A (1 - e^{-c e})/c   up to e* = ln(1 - c g/A)/c, where g reaches 0
         g >= 0:  g <- g e^{-C e} + A (1 - e^{-C e})/C   for the remaining change
 
-    The state (axes, 2) is (v, h). Inner loops do not close, unlike in every Prandtl-Ishlinskii model. Raises `DesignError` if gamma is at
-    most -beta or above beta, because loops would not dissipate energy, or if the stroke would fall with rising voltage.
+    The state (axes, 2) is (v, h). Inner loops do not close; those of every Prandtl-Ishlinskii model do. Raises `DesignError` unless -beta <
+    gamma <= beta, because loops would not dissipate energy, and if the stroke would fall with rising voltage.
     """
 
     gain: Array
@@ -53,7 +53,7 @@ class BoucWen(Hysteresis):
         return self.step(np.zeros((self.axes, 2)), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """Return the next state (axes, 2) of voltage and lag, and the strokes (axes,), for the next voltages (axes,)."""
+        """Return the next state (axes, 2), voltage and h, and the strokes (axes,), for the next voltages (axes,)."""
         volts, lag = state.T
         slow, fast = np.maximum(self.beta - self.gamma, _TINY), self.beta + self.gamma
         sign, way = np.sign(value - volts), np.abs(value - volts)
@@ -87,11 +87,11 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
 
 @check_arguments
 def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.0, skew: float = 0.5) -> BoucWen:
-    """Construct a Bouc-Wen stack of this `stroke` [m] over `volts`, with a settled major loop of relative `width` (0.15: 15 %).
+    """Construct the Bouc-Wen model of a stack from its settled major loop over `volts`: `stroke` [m] and relative `width` (0.15: 15 %).
 
-    `sharpness` is the parameter beta times the voltage range: if it is large, the lag h saturates early. `skew` is gamma/beta. All loops
-    scale with the lag: lag and gain therefore follow from two linear equations. Raises `DesignError` if the stroke of the constructed loop
-    would not rise with the voltage everywhere.
+    `sharpness` is beta times the voltage range: if it is large, h saturates early. `skew` is gamma/beta. Since h is proportional to A, A
+    and the gain d follow from two linear equations for stroke and width. Raises `DesignError` if the stroke of the constructed loop would
+    not rise with the voltage everywhere.
 
     >>> model = bouc_wen(150e-6, (0.0, 1000.0), 0.15)
     >>> loop = major_loop(model, (0.0, 1000.0), count=101)

@@ -102,7 +102,7 @@ def invert(envelope: Envelope) -> Envelope:
 
 
 def descent_findings(envelope: Envelope, where: str) -> list[Finding]:
-    """Find the pieces of an envelope that do not ascend: the inverse is not unique there.
+    """Find the pieces of an envelope that do not ascend. There, the inverse is not unique.
 
     >>> descent_findings(Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]), "envelope")[0].what
     'between 1 and 2 on axis 0 the value changes from 2 to 1 (expected ascending values)'

@@ -15,7 +15,7 @@ from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlin
 
 @check_arguments
 def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
-    """Compute the model that inverts `model` exactly, sample by sample: plays between the inverse envelopes.
+    """Compute the model that inverts `model` exactly, sample by sample. It also has plays between two envelopes.
 
     The model has thresholds r_i, weights p_i, and envelopes a before and b after the plays; P_j = p_0 + ... + p_j is the slope of the
     virgin curve beyond r_j. The thresholds s_j, weights q_j and envelopes a' and b' of the inverse model are
@@ -23,8 +23,8 @@ def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
         s_j = sum_{i<=j} p_i (r_j - r_i),   q_0 = 1/p_0,   q_j = -p_j / (P_j P_{j-1}),   a' = b^-1,   b' = a^-1
 
     (Kuhnen 2003, eqs. 17 to 19). The inverse exists if and only if every P_j > 0 and both envelopes ascend. Raises `DesignError` for each
-    threshold with P_j <= 0, and for each envelope piece that does not ascend. Model and inverse start from the unloaded state;
-    `inverse_state` gives the state of the inverse for other states.
+    threshold with P_j <= 0, and for each envelope piece that does not ascend. Both models start from the unloaded state; for other states,
+    `inverse_state` gives the inverse's state.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> wanted = np.array([0.0, 70e-6, 60e-6, 5e-6])

@@ -15,19 +15,19 @@ from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 @dataclass(frozen=True, eq=False)
 class PrandtlIshlinskii(Hysteresis):
-    """Prandtl-Ishlinskii hysteresis y = b( sum_i p_i F_{r_i}[a(x)] ): plays F, thresholds r_i, weights p_i, envelopes a before, b after.
+    """Prandtl-Ishlinskii hysteresis y = b( sum_i p_i F_{r_i}[a(x)] ), with plays F between the envelopes a and b.
 
-    For each axis, one sample is computed in this order (also in generated code):
+    r_i are the thresholds of the plays, p_i their weights. For each axis, one sample is computed in this order (also in generated code):
 
         u   = a(x)
         z_i = max(u - r_i, min(u + r_i, z_i))     for every i, z_i the state
         y   = b(sum_i p_i z_i)
 
-    The plays are Kuhnen's (Eur. J. Control 9, 2003, 407-418), the envelopes those of Al Janaideh, Rakheja and Su (IEEE/ASME Trans.
-    Mechatronics 16, 2011, 734-744). `thresholds` (axes, n) ascend from r_0 = 0, the play without memory; `weights` are (axes, n). For a
-    stack, x is the voltage and `before` maps volts to volts. Thresholds are in V and weights in m/V. `after` maps metres to metres and
-    includes the gauge's offset; y is the free stroke [m]. The inverse model (`inverse`) has the same form, but maps metres to volts.
-    Initially all z_i = 0. With positive weights and ascending `before`, the stroke lags the voltage, and no loop generates energy.
+    The plays are by Kuhnen (Eur. J. Control 9, 2003, 407-418), the envelopes by Al Janaideh, Rakheja and Su (IEEE/ASME Trans. Mechatronics
+    16, 2011, 734-744). `thresholds` (axes, n) ascend from r_0 = 0, the play without memory; `weights` are (axes, n). For a stack, x is the
+    voltage, y the free stroke [m], thresholds are in V and weights in m/V. The envelope `before` (a) maps volts to volts; `after` (b) maps
+    metres to metres and includes the gauge's offset. The inverse model (`inverse`) has the same form, but maps metres to volts. Initially
+    all z_i = 0. With positive weights and ascending `before`, the stroke lags the voltage, and no loop generates energy.
 
     For a single axis the shape (n,) is also accepted. Raises `DesignError` for thresholds that do not ascend from 0, and different shapes.
 

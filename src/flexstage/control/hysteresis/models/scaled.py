@@ -23,11 +23,11 @@ class Stacks:
 
 
 def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIshlinskii:
-    """Scale a one-axis model with the voltage range `volts` to n stacks, whose loops have the same form in each stack's range and stroke.
+    """Scale a one-axis model with the voltage range `volts` to n stacks with other voltage ranges and strokes, but loops of the same shape.
 
-    Only the knots of the envelope before the plays and the values of the envelope after the plays change; thresholds and weights do not.
-    The full stroke is the stroke of the settled loop, with 0 at the loop's lower end. Raises `DesignError` for a model of several axes, and
-    for invalid ranges and strokes.
+    Only the knots of the envelope before the plays and the values of the envelope after the plays change; thresholds and weights do not. A
+    stack's full stroke is the stroke of its settled loop, measured from the loop's lower end. Raises `DesignError` for a model of several
+    axes, and for invalid ranges and strokes.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> two = Stacks(np.array([0.0, -100.0]), np.array([1000.0, 400.0]), np.array([150e-6, 30e-6]))
