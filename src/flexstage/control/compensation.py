@@ -78,8 +78,9 @@ class StaticError(InNotebook):
     """Static error in open loop: `error` (f, f) is the commanded minus the reached pose, per unit of the commanded pose.
 
     Rows of `error` are the reached coordinates, columns the commanded ones. The diagonal is the error of each axis, the other elements are
-    crosstalk. `parasitic` (6, f) is the motion outside the ideal motions, per unit of the commanded pose. `offset` (6,) is the twist caused
-    by loads at zero command. `largest` is the largest error per unit of command in all six directions, with rotations converted to lengths.
+    crosstalk. `parasitic` (6, f) is the motion outside the ideal motions, per unit of the commanded pose. `offset` (6,) is the twist that
+    remains at zero command under the loads. `largest` is the largest error per unit of command in all six directions, with rotations
+    converted to lengths.
     """
 
     error: Matrix

@@ -76,10 +76,10 @@ class LQG:
 def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances, feedforward: Array | None = None) -> LQG:
     """Design the minimum-cost regulator and the minimum-variance observer for a `model` from commands to pose (`pose_plant`).
 
-    K and K_z solve the algebraic Riccati equation of the model with integrators of the error. The observer gain solves the Riccati equation
-    of the model with its noise (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). Noise of one-sided density G is white up to half
-    the sampling rate: with the sampling period T, a sample has the variance G^2/(2 T). Raises `DesignError` for a continuous model, gauges
-    without noise, and an undamped mode that is not controllable or observable.
+    The gains K and K_z of `LQG` follow from the algebraic Riccati equation of the model with integrators of the error. The observer gain M
+    follows from the Riccati equation of the model with its noise (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). Noise of
+    one-sided density G is white up to half the sampling rate: with the sampling period T, a sample has the variance G^2/(2 T). Raises
+    `DesignError` for a continuous model, gauges without noise, and an undamped mode that is not controllable or observable.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -228,7 +228,7 @@ def _sampled_system(control: LQG) -> System:
 
 
 def with_feedforward_states(control: System, given: LQG) -> System:
-    """Add feedforward of the reference r: the static strokes F r, plus K x for the static states x that they cause (regulator gain K).
+    """Add feedforward to a controller: static strokes for the reference, plus the regulator gain times the static states they cause.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop

@@ -17,11 +17,11 @@ from flexstage.control.systems.system import System
 
 @dataclass(frozen=True)
 class PID(CheckedFields):
-    """PID controller k_p + k_i/s + k_d s/(1 + s/(2 pi f)): `proportional` [1], `integral` [1/s], `derivative` [s], `filter` f [Hz].
+    """PID controller k_p + k_i/s + k_d s/(1 + s/(2 pi f)) from a loop's error [m] to its command [m].
 
-    The controller's input is a loop's error [m], and its output is the loop's command [m]. The filter of the derivative bounds the gain at
-    high frequencies by k_p + 2 pi f k_d. `tracking` has the meaning of `PI.tracking`. Raises `DesignError` for negative gains and a
-    derivative without a filter.
+    The gains are `proportional` k_p [1], `integral` k_i [1/s] and `derivative` k_d [s]. The derivative's `filter` f [Hz] limits the gain at
+    high frequencies to k_p + 2 pi f k_d. `tracking` is defined as for `PI`. Raises `DesignError` for negative gains and a derivative
+    without a filter.
 
     >>> control = PID(proportional=0.5, integral=100.0, derivative=0.01, filter=1000.0)
     >>> found = control.system().transfer(np.array([10.0]))[0, 0, 0]

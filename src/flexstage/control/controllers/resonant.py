@@ -20,7 +20,7 @@ from flexstage.control.systems.system import System
 class IntegralResonant(CheckedFields):
     """Integral resonant control u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): damping by positive feedback, tracking by an integrator.
 
-    An integrator -k/s around the plant with feed-through, G - d, is equivalent to Q around the plant G (Aphale, Fleming & Moheimani 2007;
+    An integrator -k/s around G - d, a plant G with feed-through, is equivalent to Q around the plant G (Aphale, Fleming & Moheimani 2007;
     Fleming, Aphale & Moheimani 2010). The fields are `gain` k [1/s], `feedthrough` d [1] (positive, because it is subtracted) and
     `tracking` k_t [1/s]. y is the loop's pose [m], e its error, u its command. The static gain of Q is 1/d; therefore the loop is stable
     only if d exceeds the plant's static gain. The anti-windup time is `tracking_time` [s], by default 1/k_t. Raises `DesignError` for
@@ -63,7 +63,7 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """Compute gains that give an undamped mode at `frequency` [Hz] the damping ratio zeta = `damping`, which is the maximum for this d.
+    """Compute gains that damp an undamped mode at `frequency` [Hz] to the ratio zeta = `damping`, the maximum for the feed-through d.
 
     The mode's angular frequency is w_p, and the plant's static gain is g = `static`. Then k d = w_p (1 + 2 zeta)^(1/2) and d = g (1 + 2
     zeta)^2 / ((1 + 2 zeta)^2 - 1) (Namavar, Fleming & Aphale 2014). The gain k_t [1/s] is `tracking`. Raises `DesignError` for numbers that

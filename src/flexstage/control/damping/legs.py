@@ -36,7 +36,7 @@ class Leg:
 
 
 def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (), asked: str = "damping") -> tuple[Leg, ...]:
-    """Return the legs of all actuators that impose a stroke along their link. Each leg has a force sensor at its stack, or a strain gauge.
+    """Return the legs of all actuators that impose a stroke along their link. Each has a force sensor at its stack, or a strain gauge.
 
     With `gauges`, returns only the legs that have one of these strain gauges. A gauge on a stack also reads the free stroke; therefore the
     commanded stroke is subtracted from the reading. A gauge elsewhere in the leg reads only the tension. Raises `DesignError` for stages

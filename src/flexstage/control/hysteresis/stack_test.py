@@ -88,7 +88,7 @@ def stack_test(record: Record, channels: Channels = Channels(), *, step: Record 
     """Identify hysteresis from a record of voltage and stroke and, optionally, creep from the record of a `step`.
 
     Channels are converted to V and m. `limits` are the actuator's voltage limits. Raises `DesignError` for ambiguous channels, for missing
-    or wrong units, and like `identify_hysteresis` and `identify_creep`.
+    or wrong units, and in the cases of `identify_hysteresis` and `identify_creep`.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))

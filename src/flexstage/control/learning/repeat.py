@@ -93,7 +93,7 @@ def _repeater(closed: Loop, control: System, period: float, band: Band, gain: fl
 
 
 def _amplification(kept: Array, left: Array, scale: Array) -> float:
-    """Largest ||(I + W z) (I + (W - P L) z)^-1|| over |z| = 1, for W (n, f, f) and W - P L."""
+    """Largest ||(I - q W) (I - q (W - P L))^-1|| over |q| = 1, for W (n, f, f) and W - P L."""
     own, turns = np.eye(left.shape[-1]), np.exp(2j * np.pi * np.arange(_PHASES) / _PHASES)
     return max(float(np.max(scaled_norms((own - z * kept) @ np.linalg.inv(own - z * left), scale))) for z in turns)
 

@@ -44,7 +44,7 @@ class ProgramSetting:
 
 @dataclass(frozen=True)
 class ProgramFunction:
-    """Further function of a program: its declaration, body lines, and notes."""
+    """Further function of a program: its declaration, its body lines, and its notes."""
 
     call: str
     body: tuple[str, ...]

@@ -17,8 +17,8 @@ from flexstage.control.simulation.parts import parts
 def loop_code(given: Machine, name: str = "loop") -> Program:
     """Generate the program of a whole loop; inputs are reference, disturbances and noise.
 
-    Outputs are poses, commands, voltages, readings, strokes and motions. One step equals one sample of `simulate`, except for the order of
-    summation. Raises `DesignError` for a hysteresis without a C form.
+    Outputs are poses, commands, voltages, readings, strokes and motions. One step computes the same as one sample of `simulate`, except for
+    the order of summation. Raises `DesignError` for a hysteresis without a C form.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
