@@ -36,10 +36,10 @@ class NoiseBudget(InNotebook):
     """Noise budget: mean squares of outputs, at the samples. The contributions of the uncorrelated sources add up.
 
     `squares` (p, k) [unit^2] has a row for each of `outputs` and a column for each of `sources`. `density` (f, p, k) is the one-sided
-    density [unit^2/Hz] at `frequencies` (f,) [Hz]. The density of floor vibration is at its true frequencies. The densities of white
-    sources include aliasing, and are zero above half the sampling rate. `changes` (g,) are the rms changes of the readings of `gauges`
-    between samples, before rounding, in resolution steps (NaN: no rounding). `notes` list the assumptions and missing data of each kind of
-    source.
+    density [unit^2/Hz] at `frequencies` (f,) [Hz]. The density due to floor vibration is at the frequency of the vibration, even above half
+    the sampling rate. The densities of white sources include aliasing, and are zero above half the sampling rate. `changes` (g,) are the
+    rms changes of the readings of `gauges` between samples, before rounding, in resolution steps (NaN: no rounding). `notes` list the
+    assumptions and missing data of each kind of source.
     """
 
     outputs: Annotated[tuple[Channel, ...], INNER]
@@ -208,8 +208,8 @@ def _source(name: str) -> Source:
 def disturbance_response(closed: Loop, inputs: tuple[str, ...], outputs: tuple[str, ...], frequencies: Array) -> Array:
     """Compute the response (f, p, m) of a loop to continuous disturbances of its stage: ground motion (`ground.x`) or strokes of actuators.
 
-    At the samples, the response is G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega) (see `noise_budget`). `frequencies` (f,) [Hz] may
-    exceed half the sampling rate.
+    At the samples, the response is G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega) (symbols: see `noise_budget`). `frequencies` (f,) [Hz]
+    may exceed half the sampling rate.
     """
     given = closed.plant
     own = [name for name in outputs if name in given.system.output_names]

@@ -27,11 +27,11 @@ class Coordinates:
     """The f coordinates of a loop: ideal motions xi of a stage (x ... rz, or a subset).
 
     `pose` (f, g) maps gauge readings to xi: it is the pseudo-inverse (R_s V)^+, where R_s contains the readings per platform motion, and V
-    the platform motions per xi. For six coordinates and six gauges it is R_s^-1 (equation 14 of Shin & Moon), for more gauges a
+    the platform motions per xi. For six coordinates and six gauges, `pose` is R_s^-1 (equation 14 of Shin & Moon); for more gauges, it is a
     least-squares solution. `gauges` are the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes: R_a
-    (equation 13 of Shin & Moon). `back` (f, n) is the inverse of `strokes`, or its least-squares inverse. For force actuators `back` is the
-    static motion per unit input, and `strokes` its pseudo-inverse, the minimum-norm inputs [A, N]. `units` are m or rad; `length` [m] makes
-    rotations comparable with translations. `gauge_units` and `input_units` are units of readings and inputs (default: m).
+    (equation 13 of Shin & Moon). `back` (f, n) is the inverse of `strokes`, or its least-squares inverse. For force actuators, `back` is
+    the static motion per unit input; its pseudo-inverse `strokes` gives the inputs [A, N] of minimum norm. `units` are m or rad; `length`
+    [m] makes rotations comparable with translations. `gauge_units` and `input_units` are units of readings and inputs (default: m).
     """
 
     names: tuple[str, ...]

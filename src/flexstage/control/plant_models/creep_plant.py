@@ -15,12 +15,12 @@ from flexstage.models.linear.model import Channel
 
 
 def add_creep(given: Plant, creep: Creep) -> Plant:
-    """Add the creep of the stacks to a plant: free strokes u `<actuator>` are first replaced by y = g_0 u + sum_i g_i s_i (see `Creep`).
+    """Add the creep of the stacks to a plant: each free stroke u is first replaced by y = g_0 u + sum_i g_i s_i (see `Creep`).
 
-    Rate-independent hysteresis precedes creep (Hammerstein model), so that everything after the hold is linear and exactly sampled. Creep
-    and amplifier lag commute, because both are linear. For charge-driven stacks the creep y - u is multiplied by h + (1 - h) w_0/(s + w_0),
-    with the residual hysteresis h and the corner w_0 [rad/s] of the charge drive. Raises `DesignError` if axes and actuators differ in
-    number.
+    The rate-independent hysteresis acts before the creep (Hammerstein model); all components after the hold are therefore linear and
+    exactly sampled. Creep and amplifier lag commute, because both are linear. For charge-driven stacks, the creep y - u passes the filter h
+    + (1 - h) w_0/(s + w_0), where h is the residual hysteresis and w_0 [rad/s] the corner of the charge drive. Raises `DesignError` if axes
+    and actuators differ in number.
 
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant

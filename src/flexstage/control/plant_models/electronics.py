@@ -90,13 +90,12 @@ class ChargeDrive:
 
 @dataclass(frozen=True)
 class Amplifier:
-    """Amplifier, converter and stack of one actuator; values are free strokes from the bias, or inputs [A or N] of a force actuator.
+    """Amplifier, converter and stack of one actuator. Values are free strokes from the bias; for a force actuator, inputs [A or N].
 
-    `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate, limited by the amplifier's current and by its voltage rate:
-    the lesser of current x gain / capacitance and voltage rate x gain, where gain is the free stroke per volt. `bandwidth` [Hz] is the
-    corner of the lag after the hold. `noise_density` [m/Hz^(1/2)] is the noise of the free stroke before the lag (None: not specified).
-    `step` [m] is the converter's resolution (0: no rounding). Infinite values impose no limit. `charge` is the charge drive, if any, with
-    its corner.
+    `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate: the lesser of current x gain / capacitance and voltage rate x
+    gain, where gain is the free stroke per volt. `bandwidth` [Hz] is the corner of the lag after the hold. `noise_density` [m/Hz^(1/2)] is
+    the noise of the free stroke before the lag (None: not specified). `step` [m] is the converter's resolution (0: no rounding). Infinite
+    values impose no limit. `charge` is the charge drive, if any, with its corner.
     """
 
     low: float = -np.inf
@@ -162,8 +161,8 @@ def sampling_chain(
 ) -> Hardware:
     """Describe the sampling chain of a stage from the data of its stacks and gauges, and from common settings or settings by name.
 
-    Raises `DesignError` for unknown names, and for settings that need missing stack data (capacitance for `resistance`, `current` and
-    `leakage`; voltage range for `current`, `slew` and `noise_density`).
+    Raises `DesignError` for unknown names, and for settings without the required stack data: the capacitance for `resistance`, `current`
+    and `leakage`, or the voltage range for `current`, `slew` and `noise_density`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> given = sampling_chain(double_triangle(), rate=10e3, delay=50e-6, amplifiers=AmplifierSettings(resistance=100.0, bits=16))

@@ -42,11 +42,11 @@ class Pairs:
 def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
     """Replace the model's response from strokes to gauges by the identified modes, static term and delay.
 
-    The new response is the sum of the identified modes and a matrix D, multiplied by the responses of the gauges' specified lags and of the
-    `delay`. D is the remainder of the identified response: a real constant, fitted up to the highest mode (for force actuators, over the
-    whole band). D also contains the effect of the modes above the test's band. The identified response includes amplifiers and filters, so
-    the hardware of the result omits them. The `delay` adds to the loop's delay. Platform motion in a loop coordinate is computed from the
-    gauge readings. Ground motion and wrenches act as in the model, whose modes get frequency and damping of the paired identified modes.
+    The new response is the sum of the identified modes and a matrix D, followed by the gauges' specified lags and an identified delay. D is
+    the remainder of the identified response: a real constant, fitted up to the highest mode (for force actuators, over the whole band). D
+    also contains the effect of the modes above the test's band. The identified response includes amplifiers and filters, so the hardware of
+    the result omits them. The identified delay is added to the loop's delay. Platform motion in a loop coordinate is computed from the
+    gauge readings. Ground motion and wrenches act on the model, whose modes have the frequency and damping of the paired identified modes.
 
     Raises `DesignError` if inputs and outputs are not the stage's actuators and gauges, and if the modes do not match the stage.
     """
@@ -92,10 +92,9 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
 
 
 def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
-    """Pair model and identified modes that have a modal assurance (MAC) above 0.7 at the gauges, and a frequency ratio below e^0.5.
+    """Pair model and identified modes that have a modal assurance (MAC) above 0.7 at the gauges, and frequencies within a factor of e^0.5.
 
-    An identified shape is compared with the space of all model modes within 5 % of the frequency of a candidate mode, because close modes
-    mix.
+    Close modes mix; an identified shape is therefore compared with the span of a model mode and all others within 5 % of its frequency.
     """
     kept = _kept(given)
     rows = [channel.name for channel in model.outputs]

@@ -132,10 +132,10 @@ def plant(
 def zero_order_hold(given: Plant) -> System:
     """Discretise the plant by zero-order hold, exactly at the samples; the `delay` applies to strokes, but not to wrenches.
 
-    Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. Gauges are read before the
-    strokes of the same sample are output; without delay and lag, their readings still result from the previous strokes. A continuous plant
-    is returned unchanged. Inputs and outputs are as in `Plant.system`. The states of the result are those of the plant, then the delayed
-    strokes.
+    Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. In each sample, the gauges
+    are read before the new strokes are output; even without delay and lag, the readings are therefore due to the previous strokes. A
+    continuous plant is returned unchanged. Inputs and outputs are as in `Plant.system`. The states of the result are those of the plant,
+    then the delayed strokes.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -39,7 +39,7 @@ class Retention:
 
     `gain` is the largest loop gain of an omitted mode at its resonance (`frequency` [Hz]), with all loops closed. `change` is the largest
     relative change that all omitted modes cause in the peak of the sensitivity S, the margins and the rejection. `wanted` (k,) marks the
-    modes to retain. `retune` is true if modes to be added change loop gain or margins, not only the ringing after a step.
+    modes to retain. `retune` is true if some modes must be added because of loop gain or margins, not only because of ringing after a step.
     """
 
     retained: int
@@ -57,14 +57,14 @@ class Retention:
 
 
 def retention(whole: Plant, closed: Loop) -> Retention:
-    """Find the significant modes of a `whole` plant, for a loop closed around a subset of them with its present controller.
+    """Find the significant modes of a `whole` plant; `closed` is the loop with a subset of its modes and the present controller.
 
     An omitted mode is significant if it meets one of three criteria. By the first criterion, the mode's loop gain at resonance, with other
-    loops and axes closed, is at least 0.1. For a pulse transfer function a b psi(z) of the mode, with the vectors a to the pose and b from
-    the commands, this loop gain is |a| |psi| |b K S|, with the controller K and the sensitivity S. The loop gain includes hold and sampling
-    exactly, also above half the sampling rate. By the second criterion, the mode makes the true platform motion ring by at least `RINGING`
-    along any axis after a step. By the third criterion, the margins require the mode. If no mode meets the first criterion, modes are added
-    by decreasing loop gain until the others change no margin by more than `MARGIN_CHANGE`.
+    loops and axes closed, is at least 0.1. The mode has the pulse transfer function a b psi(z), with the vectors a to the pose and b from
+    the commands. Its loop gain is |a| |psi| |b K S|, where K is the controller and S the sensitivity. The loop gain includes hold and
+    sampling exactly, also above half the sampling rate. By the second criterion, the mode makes the true platform motion ring by at least
+    `RINGING` along any axis after a step. The third criterion applies if no mode meets the first: modes are added by decreasing loop gain
+    until the remaining modes change no margin by more than `MARGIN_CHANGE`.
 
     >>> from flexstage.control.systems.closed import loop
     >>> from flexstage.control.example import integral_loop

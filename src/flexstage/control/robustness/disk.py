@@ -36,7 +36,7 @@ class Edge:
 
 @dataclass(frozen=True)
 class DiskMargin(InNotebook):
-    """Disk margin alpha of all loops, which have simultaneous factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2); s is the `skew`.
+    """Disk margin alpha of all loops, each multiplied by a factor f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2); s is the `skew`.
 
     The complex numbers d_i are the variations of the loops. Stability is guaranteed for all |d_i| < `guaranteed`; the proof covers every
     frequency if `covered`, else only sampled frequencies. Some d_i of magnitude `reached` >= `guaranteed` make the loop marginally stable
@@ -90,12 +90,12 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
 def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
     """Compute the disk margin of all loops at once. The factors are applied at the poses, at the commands, or at both if `cut` is None.
 
-    The margin is alpha = 1/sup mu(M) over all frequencies for M = S + (skew - 1)/2, where S is the sensitivity and mu the structured
-    singular value for a complex factor in every loop. An upper bound of mu is the minimum over diagonal matrices D of sigma(D M D^-1), the
-    largest singular value. A lower bound is the maximum over diagonal matrices U of phase factors of rho(U M), the spectral radius. The
-    upper bound is proved for all frequencies: for one D, a Hamiltonian matrix gives the intervals in which sigma is below a level, 0.1 %
-    above the highest value found. Further matrices D are computed until such intervals cover all frequencies. Raises `DesignError` for an
-    unstable loop.
+    The margin is alpha = 1/sup mu(M) over all frequencies for M = S + (skew - 1)/2. S is the sensitivity, and mu is the structured singular
+    value for a complex factor in every loop. An upper bound of mu is the minimum over diagonal matrices D of sigma(D M D^-1), the largest
+    singular value. A lower bound is the maximum over diagonal matrices U of phase factors of rho(U M), the spectral radius. The upper bound
+    is proved for all frequencies: with a fixed D, a Hamiltonian matrix gives the intervals in which sigma is below a level. This level is
+    0.1 % above the highest value found. Further matrices D are computed until such intervals cover all frequencies. Raises `DesignError`
+    for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()

@@ -96,11 +96,11 @@ class MeasuredMargins(InNotebook):
 def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> MeasuredMargins:
     """Compute the margins of a loop L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}) from measured responses P of the plant.
 
-    H_0 is the response of the hold, K of the controller with the sampling time T; w = 2 pi f. P is estimated from records with local
-    polynomials (`local_responses`), or is the analyser's response. Errors of P are assumed to be circular normal. For an analyser's
-    response, their variance is |P|^2 (1 - g^2)/(n g^2), with the coherence g^2 and n averages (Bendat & Piersol, Random Data, 4th ed.,
-    2010, chapter 9), on the assumption that one input was driven at a time. Confidence limits are quantiles of 100 random draws; they are
-    widened if the draws are biased. Aliasing of signals above half the sampling rate is neglected.
+    H_0 is the response of the hold, and K that of the controller; T is the sampling time, and w = 2 pi f. P is estimated from records with
+    local polynomials (`local_responses`), or is the analyser's response. The errors of P are assumed to have a circular complex normal
+    distribution. For an analyser's response, their variance is |P|^2 (1 - g^2)/(n g^2), with the coherence g^2 and n averages (Bendat &
+    Piersol, Random Data, 4th ed., 2010, chapter 9). This assumes that one input was driven at a time. Confidence limits are quantiles of
+    100 random draws; they are widened if the draws are biased. Aliasing of signals above half the sampling rate is neglected.
 
     Only frequency lines within the band of the identification and below half the sampling rate are used.
     """

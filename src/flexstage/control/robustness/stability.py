@@ -27,10 +27,10 @@ _ALIKE = 1e-3
 class Pole:
     """Closed-loop pole with its source.
 
-    `frequency` [Hz], damping `ratio` -growth / |p| of the pole p, and growth rate `growth` [1/s] (negative: decay) are those of the pole
-    pair. `source` is the mode or device with the largest participation in the pole (`mode 3 at 126 Hz`, `controller`, `amplifier B1`,
-    `gauge S1`, `delayed strokes`); `share` is this participation. `coordinate` is the coordinate with the largest error; errors in rotation
-    are multiplied by the stage's length.
+    The pole pair p has the `frequency` [Hz], the growth rate `growth` [1/s] (negative: decay) and the damping `ratio` -growth / |p|.
+    `source` is the mode or device with the largest participation in the pole (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`,
+    `delayed strokes`); `share` is this participation. `coordinate` is the coordinate with the largest error; errors in rotation are
+    multiplied by the stage's length.
     """
 
     frequency: Annotated[float, FREQUENCY]
@@ -47,8 +47,8 @@ class Verdict(InNotebook):
 
     `slowest_pole` is the least stable pole. `poles` (k,) are all poles as rates [1/s], least stable first; a pole z of a loop with the
     sampling time T has the rate ln z / T. With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to
-    `gain_high`. For a stable loop, this interval contains 1 (0 and infinite: no limit within a factor of 1000). For an unstable loop, it is
-    the nearest stable interval below 1 (NaN: none down to 1/1000). `sentence` summarises the verdict.
+    `gain_high`. For a stable loop, this interval contains 1 (0 and infinite: no limit within a factor of 1000). For an unstable loop, these
+    limits belong to the nearest stable interval below 1 (NaN: no stable factor down to 1/1000). `sentence` summarises the verdict.
     """
 
     stable: bool

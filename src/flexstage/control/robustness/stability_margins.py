@@ -81,10 +81,10 @@ class Margins(InNotebook):
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
     """Compute margins of one loop at a time, with the other loops closed; `found` are the `curves` at the cut if already known.
 
-    Gain limits are at frequencies at which the sensitivity S_ii = 1/(1 + L_i) of the open loop L_i is real and below 0 or above 1 (L_i is
-    negative). Phase and delay limits are at frequencies at which the real part of S_ii is 1/2 (|L_i| = 1). All limits are exact to rounding
-    error. The disk margin is alpha_i = 1/||S_ii - 1/2||, with the largest magnitude over all frequencies (Seiler, Packard, Gahinet, IEEE
-    Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
+    Gain limits occur where the open loop L_i is real and negative: its sensitivity S_ii = 1/(1 + L_i) is then real, and below 0 or above 1.
+    Phase and delay limits occur where |L_i| = 1: the real part of S_ii is then 1/2. All limits are exact to rounding error. The disk margin
+    is alpha_i = 1/||S_ii - 1/2||; the norm is the largest magnitude over all frequencies (Seiler, Packard, Gahinet, IEEE Control Systems
+    40, 2020). Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = margins(integral_loop(), LoopBreak.POSE).of("x")
