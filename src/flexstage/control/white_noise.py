@@ -90,9 +90,9 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
 def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     """Return the closed loop driven by unit white inputs, and the source of each input.
 
-    Gauge noise is white before lag and filter; the noise after them is sampled exactly, with aliasing. Without lag and filter, gauge noise
-    is limited to half the sampling rate. Rounding noise is white with variance step^2/12. Amplifier noise also drives the stage between the
-    samples; noise of an amplifier without lag is omitted here.
+    Gauge noise is white before lag and filter; the noise after them is sampled exactly, with aliasing. For a gauge without lag and filter,
+    the noise is assumed to end at half the sampling rate. Rounding noise is white with variance step^2/12. Amplifier noise also drives the
+    stage between the samples; noise of an amplifier without lag is omitted here.
 
     >>> from flexstage.control.example import integral_loop
     >>> system, sources = white_system(integral_loop(), ("relative.x",))

@@ -24,8 +24,8 @@ class ExternalInputs:
 def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> ExternalInputs:
     """Arrange named series (n,) of `count` samples in the order of the loop's inputs; missing series are zero.
 
-    Names are other inputs of the plant (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises `DesignError` for
-    unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a lost reading.
+    Names are inputs of the plant except strokes (such as `ground.x`, `platform.fz`), and `noise.<gauge>` and `noise.<actuator>` [m]. Raises
+    `DesignError` for unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a lost reading.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

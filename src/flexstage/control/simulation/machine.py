@@ -38,10 +38,10 @@ class Amplifiers:
 
 @dataclass(frozen=True, eq=False)
 class Relief:
-    """Charge-drive reduction of the hysteretic stroke, which is the stroke minus the linear stroke of the same voltage.
+    """Reduction of the hysteretic stroke (the stroke minus the linear stroke at the same voltage) by charge drives.
 
     `residual_hysteresis` (m,) is the fraction of the hysteretic stroke that remains. `leak` (m,) is the fraction of the removed stroke that
-    returns per sample by charge leakage: 1 - exp(-2 pi f T) for a drive's corner frequency f.
+    returns per sample by charge leakage: 1 - exp(-2 pi f T), with the drive's corner frequency f and the sampling period T.
     """
 
     residual_hysteresis: Array
@@ -54,11 +54,11 @@ class Machine:
 
     A sample k begins with the readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), which are rounded to `resolution` (g,)
     [m] (0: no rounding). The gauge's last valid reading replaces a reading that is not finite or beyond `half_range` (g,) [m] (default:
-    unlimited). The pose is `pose` (f, g) y, and the error is reference - pose. The `controller` computes `command.<actuator>` from any of
-    the inputs `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`. The voltage is computed by the inverse of `compensation`,
-    or is proportional to the command, and is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the voltage (reduced
-    by `relief`), or is proportional to it. Finally, the states of plant and controller are computed for sample k + 1. The input `applied`
-    is the amplifier's output minus its input: zero except at a limit.
+    unlimited). The pose is the matrix `pose` (f, g) times y, and the error is reference minus pose. The `controller` computes
+    `command.<actuator>` from any of the inputs `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`. The voltage is computed
+    by the inverse of `compensation`, or is proportional to the command, and is limited by `amplifiers`. The free stroke is computed by
+    `hysteresis` from the voltage (reduced by `relief`), or is proportional to it. Finally, the states of plant and controller are computed
+    for sample k + 1. The input `applied` is the amplifier's output minus its input: zero except at a limit.
 
     `plant` is sampled. The plant's inputs named in `actuators` are strokes, all other inputs are disturbances; strokes affect no gauge in
     the same sample.
@@ -87,7 +87,7 @@ class Machine:
 
     @property
     def reach(self) -> Array:
-        """Largest valid readings (g,) [m]: half the gauges' range plus half their resolution; the largest finite number without a range."""
+        """Largest valid readings (g,) [m]: half the gauge's range plus half its resolution; without a range, the largest finite number."""
         ends = np.full(len(self.gauges), np.inf) if self.half_range is None else self.half_range
         return np.minimum(ends + 0.5 * self.resolution, np.finfo(float).max)
 

@@ -78,9 +78,9 @@ def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) 
 def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Array:
     """Shape white Gaussian noise by a one-sided density (f,) at the frequencies of a series twice as long; return half the series.
 
-    The transform of the series is X(f) = W(f) (S(f) / 2 T)^(1/2), with the transform W of white numbers of unit variance. The series is
-    Gaussian and stationary, with the given density at its frequencies. Discarding half the series removes the periodicity (Shinozuka and
-    Deodatis, Applied Mechanics Reviews 44, 1991).
+    A series with the density S and the step T has the transform X(f) = W(f) (S(f) / 2 T)^(1/2); W is the transform of white numbers of unit
+    variance. The series is Gaussian and stationary, with the given density at its frequencies. Discarding half the series removes the
+    periodicity (Shinozuka and Deodatis, Applied Mechanics Reviews 44, 1991).
 
     >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # density 2 T: unit variance, the unchanged white noise
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))

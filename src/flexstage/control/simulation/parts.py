@@ -39,7 +39,7 @@ class Parts:
 
 
 def parts(given: Machine) -> Parts:
-    """Partition the matrices of a loop. Reference minus pose replaces the error as input of the controller.
+    """Partition the matrices of a loop. The controller's input `error` is replaced by reference minus pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

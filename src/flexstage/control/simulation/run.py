@@ -20,9 +20,9 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annota
     """Simulate the loop's response to a reference (n, f) [m, rad] and disturbances (n,), from rest, sample by sample.
 
     `disturbances` are named series. Names such as `ground.<c>` and `platform.fx` are inputs of the plant. `noise.<gauge>` [m] is added to a
-    reading before rounding (not finite: lost reading), `noise.<actuator>` [m] to a free stroke. The simulation is deterministic (see
-    `noises`). Between samples, strokes and wrenches are constant and ground motion is linear; the plant has no integration error (see
-    `zero_order_hold`). Raises `DesignError` for unknown names, different lengths, and diverging numbers.
+    reading before rounding; if it is not finite, the reading is lost. `noise.<actuator>` [m] is added to a free stroke. The simulation is
+    deterministic (see `noises`). Between samples, strokes and wrenches are constant and ground motion is linear; the plant has no
+    integration error (see `zero_order_hold`). Raises `DesignError` for unknown names, different lengths, and diverging numbers.
 
     >>> import numpy as np
     >>> from flexstage.control.example import integral_loop

@@ -43,7 +43,7 @@ class RunningLoop:
         """Samples since the reset."""
 
     def advance(self, wanted: Array, held: Array | None = None) -> Series:
-        """Simulate a sample for each row of the references `wanted` (n, f); `held` (f,) marks the servo-controlled axes, default all.
+        """Simulate a sample for each row of the references `wanted` (n, f); `held` (f,) marks the servo-controlled axes (default: all).
 
         If numbers diverge, resets the loop and raises `DesignError`.
         """

@@ -123,7 +123,7 @@ class ComparedController:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Criteria by name (smaller is better): the worst of all coordinates; for noise (if any), the mean of their logarithms."""
+        """Values by criterion (smaller is better) of the worst coordinate; for noise (if any), the mean logarithm over all coordinates."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),

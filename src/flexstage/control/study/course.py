@@ -183,7 +183,7 @@ def course_findings(course: NamedTrajectory, poses: Array, times: Array, gains: 
 def course_warnings(
     course: NamedTrajectory, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
 ) -> list[Finding]:
-    """Warn if a trajectory, other than a step, exceeds the rate limits `slew` of the m amplifiers, so that they saturate."""
+    """Warn if a trajectory other than a step exceeds the rate limits `slew` (m,) of the amplifiers, which then saturate."""
     if course.is_step or not np.any(np.isfinite(slew)):
         return []
     found = speed_findings(poses, times, gains, slew, units=units)

@@ -52,7 +52,7 @@ class DisturbedLoop:
     rest: float
 
     def simulate(self, poses: Array, number: int = 0, held: Array | float = 0.0) -> Simulated:
-        """Simulate n commanded poses (n, f), starting at rest in the pose `held` (f,); each `number` has other noise."""
+        """Simulate n commanded poses (n, f), starting at rest in the pose `held` (f,); the noise depends on `number`."""
         lead, series = self._noise(len(poses), number)
         if not series and not np.any(held):
             return simulate(self.machine, poses)
@@ -60,7 +60,7 @@ class DisturbedLoop:
         return part_of(simulate(self.machine, np.concatenate([before, poses]), series), slice(lead, None))
 
     def begin(self, count: int) -> Callable[[Array], Array]:
-        """Start a simulation of `count` samples; the returned function continues it with commanded poses, and returns measured poses."""
+        """Start a simulation of `count` samples; return a function that continues it with commanded poses and returns measured poses."""
         lead, series = self._noise(count, 0)
         running = RunningLoop(self.machine, series)
         running.advance(np.zeros((lead, len(self.machine.names))))

@@ -50,11 +50,11 @@ class ResolvedSetup:
     """Set-up completed for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
 
     `plant` has the retained modes, or the specified number of modes. `whole` has all modes of the model; `stage` has all modes too, but no
-    inner loops. `highest` [Hz] is the highest frequency of the lowest platform modes, as many as the loop has coordinates. If `displaced`
-    is true, the model is linearised at an operating point, including its deflection. `loaded` is the effect of permanent load on the
-    nominal stage; if it is significant, the model is the loaded stage. With a measured plant, `predicted` is the model's plant. `damping`
-    describes the force feedback, `charge` the charge amplifiers. `plant` and `whole` include both, if specified. In `model`, stacks have
-    the stiffness at constant voltage, which is correct for statics. `solid` is the finite-element stage, if that is the model.
+    inner loops. `highest` [Hz] is the frequency of the n-th lowest platform mode, where n is the number of coordinates of the loop. If
+    `displaced` is true, the model is linearised at an operating point, including its deflection. `loaded` is the effect of permanent load
+    on the nominal stage; if it is significant, the model is the loaded stage. With a measured plant, `predicted` is the model's plant.
+    `damping` describes the force feedback, `charge` the charge amplifiers. `plant` and `whole` include both, if specified. In `model`,
+    stacks have the stiffness at constant voltage, which is correct for statics. `solid` is the finite-element stage, if that is the model.
     """
 
     mechanism: Mechanism
@@ -177,8 +177,8 @@ def _with_inner_loops(given: ResolvedSetup, found: Plant, stage: StagePlant) -> 
 class StagePlant:
     """Stage with all modes of its model and without inner loops, from which reduced plants are derived.
 
-    `moving` is the model with constant charge in the legs `charged`; `drives` are the charge drives of these legs. `sensed` are the legs
-    with force feedback.
+    In the model `moving`, the legs `charged` have constant charge; `drives` are the charge drives of these legs. `sensed` are the legs with
+    force feedback.
     """
 
     plant: Plant
@@ -244,7 +244,7 @@ def _force_findings(kinematics: Kinematics, setup: LoopSetup) -> Iterator[Findin
 
 
 def highest_platform_mode(mechanism: Mechanism, model: LinearModel, count: int) -> float:
-    """Return the highest frequency [Hz] of a number `count` of lowest platform modes, along ideal motions.
+    """Return the `count`-th lowest frequency [Hz] of the platform modes, which are along ideal motions.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

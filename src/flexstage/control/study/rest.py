@@ -25,7 +25,7 @@ from flexstage.models.theory import Model
 class RestErrors(InNotebook):
     """Static errors of a stage with strokes from the ideal kinematics (`ideal_map`), or corrected for lost motion (`lost_motion_gains`).
 
-    `other_gains` is the error with lost-motion gains of another model, `other_model` (`None` if that model does not apply). `load` (6,) [m,
+    `other_gains` is the static error with the lost-motion gains of `other_model` (`None` if this model does not apply). `load` (6,) [m,
     rad] is the platform's deflection under all its loads with fixed actuators. `load_strokes` (n,) [m] are the strokes that cancel this
     deflection as far as possible; `load_left` (6,) is the remaining deflection.
     """

@@ -75,7 +75,7 @@ class StepAnswer:
 
     @property
     def cross_axis_error(self) -> Annotated[tuple[str, ...], INNER, Heading("cross-axis error")]:
-        """Largest translation and rotation along other axes, by axis. Values below 0.1 fm or frad are rounding errors and are omitted."""
+        """Largest translation and largest rotation along other axes. Values below 0.1 fm or frad are rounding errors and are omitted."""
         largest = {
             each.unit: max((other.largest, name) for name, other in self.others.items() if other.unit == each.unit)
             for each in self.others.values()
@@ -85,7 +85,7 @@ class StepAnswer:
 
 @dataclass(frozen=True)
 class CoilHeat:
-    """Thermal load of a force actuator in a repeated trajectory: `rms` of its input, and continuous limit `held` of the input.
+    """Thermal load of a force actuator in a repeated trajectory: its rms input `rms`, and its limit `held` for continuous input.
 
     Both have the unit `unit`. `power` [W] is the dissipated power, `warming` [K] the steady temperature rise; both are absent without data.
     """
@@ -106,7 +106,7 @@ class CoilHeat:
 
 @dataclass(frozen=True)
 class LegUse:
-    """Amplifier load [m]: the largest stroke `added` by force feedback, and the `largest` total with the stroke of the controller.
+    """Amplifier load [m]: the largest stroke `added` by force feedback, and the `largest` total stroke (controller plus force feedback).
 
     `fastest` [m/s] is the largest rate of the total stroke between samples. `reach` [m] is the amplifier's stroke limit in the direction of
     the largest stroke, `slew` [m/s] its rate limit (infinite: no limit).

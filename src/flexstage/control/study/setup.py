@@ -99,8 +99,8 @@ class GaugeSetup(CheckedFields):
 class VibrationSetup(CheckedFields):
     """Floor vibration along one axis: a named `criterion`, or amplitude densities of `acceleration`, `velocity` or `displacement`.
 
-    A single density is white noise. If there is a density for each of several `frequencies`, the logarithm of the density is interpolated
-    linearly over the logarithm of the frequency; outside these frequencies the density is zero.
+    A single density is white noise. Between several `frequencies`, each with a density, the logarithm of the density is linear in the
+    logarithm of the frequency. Outside these frequencies, the density is zero.
     """
 
     criterion: Criterion | None = None

@@ -102,8 +102,8 @@ class Sweep:
 def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
     """Construct the stacks of a stage with the hysteresis of a set-up, scaled to their strokes and voltages.
 
-    A file's model is scaled: for each stack, its hysteresis loop has the stack's voltage range and full stroke. With only a width, the
-    plant is by default a Bouc-Wen stack, and the model is identified from a simulated record of such a stack. Raises `DesignError` for
+    A file's model is scaled for each stack, so that its hysteresis loop has the stack's voltage range and full stroke. With only a width,
+    the plant is by default a Bouc-Wen stack, and the model is identified from a simulated record of such a stack. Raises `DesignError` for
     invalid files, and for stacks without a voltage range.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -148,7 +148,7 @@ class LoopStudy(InNotebook):
 
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
-        """Highest frequency [Hz] of the lowest platform modes, as many as the loop has coordinates."""
+        """Frequency [Hz] of the n-th lowest platform mode, where n is the number of coordinates of the loop."""
         return self.settled.highest
 
     @property

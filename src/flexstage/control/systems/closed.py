@@ -36,9 +36,9 @@ class Loop:
     its inputs `applied.<actuator>`, which a linear loop does not use. `states` names the states of `system`.
 
     `system` is the closed loop. Inputs: `reference.<c>` [m, rad]; `noise.<gauge>` [m] added to a reading, `noise.<actuator>` [m] added to a
-    command; `ground.<c>`, `platform.fx` ... (constant over a sample). Outputs: `platform.<c>`, `<point>.<c>`, `relative.<c>` ...; `S1` ...
-    readings with their noise; `pose.<c>` the estimated pose; `error.<c>` = reference - pose; `command.<actuator>` from the controller;
-    `<actuator>` with its noise, the input of the hold.
+    command; ground motions `ground.<c>`; wrenches such as `platform.fx`, constant between samples. Outputs: motions `platform.<c>`,
+    `<point>.<c>` and `relative.<c>`; readings such as `S1` with their noise; the estimated pose `pose.<c>`; `error.<c>` = reference - pose;
+    `command.<actuator>` from the controller; `<actuator>`, the command with noise at the input of the hold.
     """
 
     plant: Plant
@@ -90,8 +90,8 @@ def loop(given: Plant, controller: System) -> Loop:
 def pose_controller(controller: System, coordinates: Coordinates, sense: Array | None = None) -> System:
     """Return the controller with two groups of inputs: feedback errors, then references.
 
-    Each feedback error replaces the controller's inputs `error` and, with the opposite sign, `pose`. With the matrix `sense` (k, c), which
-    maps to loop coordinates, both groups of inputs are in loop coordinates.
+    Each feedback error replaces the controller's inputs `error` and, with the opposite sign, `pose`. If a matrix `sense` (k, c) maps the
+    pose to loop coordinates, both groups of inputs are in loop coordinates.
     """
     names, known = coordinates.names, controller.input_names
     entry = np.zeros((2, len(known), len(names)))
@@ -105,10 +105,10 @@ def pose_controller(controller: System, coordinates: Coordinates, sense: Array |
 
 
 def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
-    """Return the open loop L for negative feedback, with S = (I + L)^-1: from the input at the break to minus the returned signal.
+    """Return the open loop L from the input at the break to the negative of the returned signal, so that S = (I + L)^-1.
 
-    The loop is opened at the pose or at the commands. Either all channels are opened (rows and columns named by coordinates or actuators,
-    inputs `cut.<name>`), or only a single `channel`. Raises `DesignError` for an unknown channel.
+    The loop is opened at the pose or at the commands: in all channels, or only in a single `channel`. Inputs are `cut.<name>`, with the
+    names of coordinates or actuators. Raises `DesignError` for an unknown channel.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
@@ -126,7 +126,7 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
 
 
 def open_everywhere(closed: Loop) -> System:
-    """Return the loop opened at all poses and all commands at once, in this order, for simultaneous factors at both sides of the plant.
+    """Return the loop opened simultaneously at all poses and commands (channels in this order), for factors at both sides of the plant.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = open_everywhere(integral_loop())

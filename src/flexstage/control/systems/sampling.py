@@ -17,8 +17,8 @@ def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) 
 
     With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d], Gamma_0
     = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled Systems, 1997,
-    section 2.3). An output sampled at an input change (f = 0) has the new value; the first `early` outputs have the previous value. All
-    inputs have the same delay. Raises `DesignError` for a sampled system, and for invalid times.
+    section 2.3). If f = 0, the input changes at a sample; outputs then have the value after this change, but the first `early` outputs the
+    value before it. All inputs have the same delay. Raises `DesignError` for a sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -56,10 +56,10 @@ def first_order_hold(system: System, step: float) -> System:
     """Discretise a continuous system by first-order hold (inputs linear between samples), with `step` [s]; exact at the samples.
 
     x[k+1] = e^{AT} x[k] + (Gamma - Gamma_1) u[k] + Gamma_1 u[k+1], Gamma_1 = int_0^T e^{A(T-s)} (s/T) ds B (Franklin, Powell and Workman,
-    Digital Control of Dynamic Systems, 1998, section 6.3.2). The states are x[k] - Gamma_1 u[k], so that no future input is required. For
-    smooth inputs such as floor motion, the relative error is (omega T)^2/12; the result has no jumps, unlike that of a zero-order hold. For
-    motion relative to the floor, the error is (omega_0 T)^2/12 with the resonance omega_0: 1e-3 for a tenth of a radian per sample. Raises
-    `DesignError` for a sampled system, and for invalid times.
+    Digital Control of Dynamic Systems, 1998, section 6.3.2). The result has the states x[k] - Gamma_1 u[k], because x[k+1] requires the
+    future input u[k+1]. For smooth inputs such as floor motion, the relative error is (omega T)^2/12, without the jumps of a zero-order
+    hold. For motion relative to the floor, the error depends on the resonance omega_0: (omega_0 T)^2/12, about 1e-3 for omega_0 T = 0.1.
+    Raises `DesignError` for a sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)

@@ -61,7 +61,8 @@ class System(CheckedFields):
 
     @property
     def growth(self) -> float:
-        """Spectral abscissa [1/s], the largest growth rate: max Re(p), or max ln|z| / T; negative for a stable system."""
+        """Spectral abscissa [1/s], the largest growth rate of the poles p: max Re(p), or max ln|p| / T of a sampled system; negative if
+        stable."""
         poles = self.poles
         if not len(poles):
             return -np.inf
@@ -95,8 +96,8 @@ class System(CheckedFields):
         """Compute the frequency response at many frequencies, for the inputs in `columns`.
 
         The result at infinite frequency is D (continuous systems only). The method is one Schur decomposition, then back substitution with
-        n^2 operations per point; A may be defective. Elements that are zero by symmetry have rounding errors relative to the largest
-        element.
+        n^2 operations per point; A may be defective. Elements that are zero by symmetry contain rounding errors in proportion to the
+        largest element.
         """
         frequencies, direct = np.asarray(frequencies, dtype=float), self.D[:, columns]
         points = self._points(np.where(np.isfinite(frequencies), frequencies, 0.0))
@@ -229,11 +230,11 @@ Terms = Mapping[str, float]
 
 
 def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple[Channel, ...], outputs: Iterable[str]) -> System:
-    """Connect systems by signal names: every input in `links` is the weighted sum of outputs and of the new system's `inputs`.
+    """Connect systems by signal names: every input in `links` is a weighted sum of outputs and of the new system's `inputs`.
 
-    An input without an entry in `links` is connected to the new input, or to the output, with the same name. With u = F y + G w: u = (I - F
-    D)^-1 (F C x + G w). Raises `DesignError` for inputs that remain unconnected, unknown names, different steps, and an algebraic loop (I -
-    F D singular).
+    An input without an entry in `links` is connected to the new input, or to the output, with the same name. The inputs are u = F y + G w,
+    with outputs y and new inputs w; therefore u = (I - F D)^-1 (F C x + G w). Raises `DesignError` for inputs that remain unconnected,
+    unknown names, different steps, and an algebraic loop (I - F D singular).
 
     >>> unit = Channel("r", "m")
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), (Channel("e", "m"),), (Channel("y", "m"),))

@@ -12,7 +12,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
-    """Find poses (n, f) outside the `polytope` of reachable poses; the finding has the first and worst times, and a permissible scale.
+    """Find poses (n, f) outside the `polytope` of reachable poses, the first and the worst time, and a permissible scale.
 
     The columns of `poses` are the polytope's coordinates. The boundary counts as reachable.
 
@@ -39,10 +39,10 @@ def _show(value: float, coordinate: str) -> str:
 
 
 def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, units: tuple[str, ...] = ()) -> list[Finding]:
-    """Check the actuator speeds for sampled poses (n, f), by R_a, against the amplifiers' rate limits `slew` (m,).
+    """Check the actuator speeds for sampled poses (n, f) against the amplifiers' rate limits `slew` (m,).
 
-    The findings are warnings, because the simulation includes the saturation of the amplifiers. The columns of `mapping` (R_a) are the
-    coordinates of the poses. `units` are the units of the actuators' inputs (default: m).
+    The findings are warnings, because the simulation includes the saturation of the amplifiers. `mapping` (R_a) maps poses to inputs of
+    actuators; its columns are the coordinates of the poses. `units` are the units of the actuators' inputs (default: m).
 
     >>> lever = Matrix(np.array([[2.0]]), ("B1",), ("x",), "1")
     >>> found = speed_findings(np.array([[0.0], [1e-6]]), np.array([0.0, 1e-3]), lever, np.array([1e-3]))

@@ -51,7 +51,7 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
 
 
 def nyquist_figure(found: Curves, highest: float, points: Array) -> Any:
-    """Plot the open loops near -1 (Nyquist plot): unit circle, circle of the `highest` permitted abs(S), `points` (m,) of the margins.
+    """Plot open loops near -1 (Nyquist plot), the unit circle, the circle of the `highest` permitted abs(S), and the margin `points` (m,).
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.systems.closed import LoopBreak

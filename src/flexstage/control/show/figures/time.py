@@ -101,7 +101,7 @@ def error_figure(test: Simulated) -> Any:
 
 
 def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
-    """Plot rms errors (n, f) in the band for each pass or period, and as dotted lines the non-repeating error `floor` (f,).
+    """Plot the rms errors (n, f) of f coordinates in n passes or periods; dotted lines are the non-repeating errors `floor` (f,).
 
     One panel is for lengths, one for angles.
 

@@ -35,8 +35,8 @@ def criterion_spectrum(criterion: Criterion) -> Spectrum:
 
     The criteria limit the rms velocity v in third-octave bands. The limit is constant from 8 to 80 Hz, and inversely proportional to the
     frequency (constant acceleration) from 4 to 8 Hz. For VC-C to VC-G the limit is constant from 1 to 80 Hz (Gordon 1999; Amick and others
-    2005, Table 1). A power density of the velocity of v^2/(f ln(2)/3) at the frequency f has exactly the rms value v in each band, if v is
-    constant. Outside these frequencies the criteria do not apply, and the spectrum is zero.
+    2005, Table 1). For constant v, a velocity with the power density v^2/(f ln(2)/3) at the frequency f has exactly the rms value v in each
+    band. Outside these frequencies the criteria do not apply, and the spectrum is zero.
 
     >>> spectrum = criterion_spectrum(Criterion.VC_D)
     >>> band = np.geomspace(10.0 * 2.0 ** (-1.0 / 6.0), 10.0 * 2.0 ** (1.0 / 6.0), 2001)
