@@ -61,8 +61,7 @@ class System(CheckedFields):
 
     @property
     def growth(self) -> float:
-        """Spectral abscissa [1/s], the largest growth rate of the poles p: max Re(p), or max ln|p| / T of a sampled system; negative if
-        stable."""
+        """Spectral abscissa [1/s], the largest growth rate: Re(p) of a pole p, or ln|p| / T in a sampled system; negative if stable."""
         poles = self.poles
         if not len(poles):
             return -np.inf

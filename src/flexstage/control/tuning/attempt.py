@@ -83,8 +83,8 @@ class BandwidthTrial:
     """Design of controllers with the crossover of all loops at a `frequency` [Hz], on the plant `seen`.
 
     The first attempt has only the specified notches. Further attempts add notches of several widths at modes with a loop gain above 0.3.
-    The best law of a loop has the lowest peak of the sensitivity. Among laws with peaks up to the argument `calm` of `reach`, the law with
-    the highest static gain is best.
+    The best law of a loop has the lowest peak of the sensitivity. With the argument `calm` of `reach`, all peaks up to `calm` count as
+    equal; the best law then has the highest gain at low frequencies.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

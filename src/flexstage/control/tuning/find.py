@@ -62,12 +62,12 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
     """Optimise a controller for the objective of a specification.
 
     The variables are the control law of every loop, and the frequencies, widths and depths of its notches. A crossover beyond a mode is
-    possible if margins hold for all mode shifts. The search first continues `known` tunings of a plant with fewer modes. If they give no
-    result, the search starts from a grid around the modes, unless the controller of highest bandwidth (`tune`) has its crossover beyond the
-    modes. If the controller of highest bandwidth is still better, the search also starts from this controller. The result is at least as
-    good for the objective (`merit`) as the controller of highest bandwidth, if that controller meets all requirements. Stability is
-    determined by eigenvalues. Robustness is determined by the peak sensitivity of all sampled loops together, for mode shifts within the
-    spread. Raises `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
+    possible if margins hold for all mode shifts. The search first continues `known` tunings of a plant with fewer modes. If these tunings
+    give no result, the search starts from a grid around the modes; this start is omitted if the controller of highest bandwidth (`tune`)
+    has its crossover beyond the modes. If the controller of highest bandwidth is still better, the search also starts from this controller.
+    The result is at least as good for the objective (`merit`) as the controller of highest bandwidth, if that controller meets all
+    requirements. Stability is determined by eigenvalues. Robustness is determined by the peak sensitivity of all sampled loops together,
+    for mode shifts within the spread. Raises `DesignError` for an unstable open loop, and for contradictory or unmet requirements.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -202,7 +202,7 @@ def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
 
 
 def reduce_gains(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
-    """Return the best rejected controller with reduced gains: all are multiplied by the largest factor that makes one acceptable."""
+    """Multiply the gains of all rejected controllers by the largest factor that makes one acceptable; return the best of them."""
     distinct = {(each.laws, each.notches): each for each in rejected}.values()
     for factor in _FACTORS:
         slowed = [replace(each, laws=tuple(_scaled(law, factor) for law in each.laws)) for each in distinct]
@@ -318,7 +318,7 @@ def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
 
 
 def instability_frequencies(within: Field, controller: Decentralised) -> Iterator[float]:
-    """Yield the frequency [Hz] of the fastest growing motion, divided by 1 + shift, for each unstable mode shift beyond the spread."""
+    """Yield the frequency [Hz] of the fastest growth, divided by 1 + shift, for each destabilising mode shift beyond the spread."""
     seen, system = within.seen, controller.system(within.seen.step)
     for offset, plant in zip(seen.offsets, seen.systems, strict=True):
         poles = closed_system(plant, system).poles.astype(complex)

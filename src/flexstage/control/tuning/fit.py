@@ -57,9 +57,10 @@ class OneLoop:
     """Single loop with the others closed: the `point` of a `shape` defines its controller C.
 
     `plants` (v, f) are the responses of v plants at their f `frequencies` (v, f) [Hz]; the product of C and a plant is the open loop. Step
-    responses use the evenly spaced frequencies `lines` (h,) [Hz] from 0 to half the step sampling rate. `slow` (w, h - 1) are the responses
-    of w plants at all `lines` except 0. The mean square of noise is a sum over the frequencies for the first plant: `disturbed` |S|^2 is
-    due to the floor, `heard` |T|^2 to the gauges. S is the sensitivity, T = 1 - S the complementary sensitivity.
+    responses are computed from the evenly spaced frequencies `lines` (h,) [Hz], from 0 to half the sampling rate of the steps. `slow` (w, h
+    - 1) are the responses of w plants at all `lines` except 0. The mean square of the noise is the sum of `disturbed` |S|^2, due to the
+    floor, and `heard` |T|^2, due to the gauges, over the first plant's frequencies. S is the sensitivity, T = 1 - S the complementary
+    sensitivity.
     """
 
     shape: Shape
@@ -112,9 +113,9 @@ class OneLoop:
     ) -> Iterator[tuple[Array, Array]]:
         """Yield the residuals and derivatives of all bounds except peaks of the sensitivity; `quiet` is the weight of noise.
 
-        `near` contains the sensitivity S (n, f) of the n plants that must meet the rejection, and slopes (p, n, f). `slow` contains the
-        complementary sensitivity T (w, h), and a function that returns slopes (p, w, h - 1). Slopes are the derivatives of the logarithm of
-        the controller C with respect to its p parameters; the derivatives of S are -S T times the slopes.
+        Slopes are the derivatives of the logarithm of the controller C with respect to its p parameters; multiplied by -S T, they are the
+        derivatives of S. `near` contains the sensitivity S (n, f) of the n plants that must meet the rejection, and the slopes (p, n, f).
+        `slow` contains the complementary sensitivity T (w, h) of w plants, and a function that returns the slopes (p, w, h - 1).
         """
         own, slopes = near
         above = self._rejected(bounds) & (np.abs(own) > _BELOW)
@@ -230,7 +231,7 @@ def _is_promising(costs: list[float], tries: int, enough: float) -> bool:
 
 
 def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:
-    """Return half the sum of squares of residuals (r,), with its gradient and curvature from their derivatives (p, r) by p parameters."""
+    """Return half the sum of squares, its gradient and its curvature from residuals (r,) and their derivatives (p, r) by p parameters."""
     cost, gradient, curvature = 0.0, np.zeros(size), np.zeros((size, size))
     for values, changes in terms:
         cost += 0.5 * float(values @ values)

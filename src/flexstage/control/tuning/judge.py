@@ -147,7 +147,7 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
 
 
 def first_rise(sizes: Array, frequencies: Array) -> float:
-    """Find the first frequency at which `sizes` rises through 1, interpolated in logarithms of both.
+    """Find the first frequency at which `sizes` rises through 1, interpolated in the logarithms of `sizes` and `frequencies`.
 
     Returns the last frequency if `sizes` never reaches 1, and the first frequency if `sizes` begins at 1 or above.
 

@@ -57,8 +57,8 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
 def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
     """Compute laws of several dampings, feed-throughs and corners.
 
-    The tracking gain k solves |k/(j w) - Q| = 1/|g| at the crossover w [1/s], with the law's feedback Q of the pose and the plant's
-    response g there.
+    The tracking gain k solves |k/(j w) - Q| = 1/|g| at the crossover w [1/s]; Q is the response of the law's feedback of the pose, and g
+    that of the plant.
     """
     found: list[IntegralResonant] = []
     turning = warped(place.frequency, step)

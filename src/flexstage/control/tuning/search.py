@@ -160,8 +160,8 @@ class Work:
 class Variant:
     """Variant of the plant: modes shifted by `offset`, commands multiplied by `gain` and delayed by `later` [s].
 
-    `limit` is the highest permitted sensitivity. The delay rotates the phase by at most `turn` [rad]. A smaller `turn` represents a smaller
-    delay for modes far above the crossover: such a mode may be unstable at some delay below `later`.
+    `limit` is the highest permitted sensitivity. The delay's phase lag is limited to `turn` [rad]. For modes far above the crossover, a
+    smaller `turn` represents a smaller delay; such a mode may be unstable with a delay smaller than `later`.
     """
 
     offset: float
@@ -204,9 +204,9 @@ def farthest(spec: TuningSpec) -> float:
 class Field:
     """Search data: the responses of plants from the commands of k loops to their poses.
 
-    `plants` (v, f, k, k) are the responses of the v variants, each at its f `frequencies` (v, f) [Hz]: the frequencies of the model
-    multiplied by (1 + offset), so that the modes are at the same indices. `slow` (w, h, k, k) are the responses of the w variants with only
-    mode shifts within the spread. They are at the evenly spaced frequencies `lines` (h,) [Hz], for step responses.
+    `plants` (v, f, k, k) are the responses of the v variants. Each variant has its own f `frequencies` (v, f) [Hz]: the model's, multiplied
+    by (1 + offset), so that the modes are at the same indices. `slow` (w, h, k, k) are responses at the evenly spaced frequencies `lines`
+    (h,) [Hz], for step responses. They belong to the w variants that have only mode shifts within the spread.
 
     `disturbed` (f, k, d) are the amplitudes of the loops' poses due to d floor motions, `heard` (f, k) the amplitudes due to gauge noise.
     Both are multiplied by the square root of the frequency spacing, so that a sum of their squares over the frequencies is a mean square.
@@ -236,7 +236,7 @@ class Field:
 
     @cached_property
     def slow_strokes(self) -> Array:
-        """Responses (w, h - 1, k, n) from n strokes to the poses of k loops, at the frequencies `lines` except the first, zero."""
+        """Responses (w, h - 1, k, n) from n strokes to the poses of k loops, at the frequencies `lines` except 0."""
         return np.stack([self.seen.driven_at(self.variants[place].offset, self.lines[1:]) for place in self.spread])
 
     @property
@@ -257,8 +257,8 @@ def _spread(spec: TuningSpec, cases: tuple[Variant, ...]) -> list[int]:
 def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0, work: Work | None = None) -> Field:
     """Prepare the data of a search from a view at the offsets of `variants`.
 
-    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` has the meaning of `Field.fast`; `work` is
-    the counter of an earlier field whose search continues.
+    Frequencies are also dense around `places` [Hz]; these frequencies of the model shift with the modes. `fast` is as in `Field`. To
+    continue an earlier search, specify its counter `work`.
     """
     drive, cases = seen.loops.drive, variants(spec)
     own = _frequencies(seen, max(each.offset for each in cases), places)
@@ -341,7 +341,7 @@ def _heard(seen: View) -> Array:
 class SearchResult:
     """Search result: each loop's shape, its parameter point, and the frequency `reached` [Hz] for the objective (0 without an objective).
 
-    `noises` are the rms errors of the loops in regulation, if known; loops of other groups are open.
+    `noises` are the rms errors of the loops in regulation, if known, with the loops of other groups open.
     """
 
     shapes: tuple[Shape, ...]
@@ -557,9 +557,9 @@ def _far(within: Field, found: SearchResult) -> float:
 
 
 def raise_targets(within: Field, starts: list[SearchResult], targets: list[float]) -> SearchResult:
-    """Increase the target from the first start that meets it: all loops together, then individually, by decreasing ratios.
+    """Increase the frequency targets from the first start that meets them: of all loops, then of single loops, by decreasing ratios.
 
-    From a target of zero, the increase begins at the frequencies that the start reaches.
+    A target of zero is first replaced by the frequency that this start reaches.
     """
     within, best = loud_enough(within, starts, targets)
     for _ in range(_LEVELS - 1):
@@ -584,12 +584,12 @@ def raise_targets(within: Field, starts: list[SearchResult], targets: list[float
 
 
 def loud_enough(within: Field, starts: list[SearchResult], wanted: list[float]) -> tuple[Field, SearchResult | None]:
-    """Fit the starts in turn, and return a field and the first result that meets the frequency targets.
+    """Fit the starts in turn until a result meets the frequency targets; return a field and this result.
 
     If only the noise limit prevents a result, the returned field has a higher limit.
 
-    A loop with a tiny gain may have a high sensitivity crossover and low noise, but never settles: its noise is no useful reference for a
-    balance.
+    A loop with a tiny gain may have a high sensitivity crossover and low noise, but it never settles. Therefore its noise is not a useful
+    limit for a balance.
     """
     best = _first_kept(within, starts, wanted)
     if best is not None or not within.allowed:
@@ -660,14 +660,14 @@ class Joint:
 
     @cached_property
     def parts(self) -> Mapping[int, slice]:
-        """Slices of the parameter vector by loop; equal loops have only one slice, under the first of them."""
+        """Slices of the parameter vector by loop; of equal loops, only the first has a slice."""
         different = [loop for loop, first in enumerate(self.within.alike) if first == loop]
         ends = np.cumsum([0, *(len(self.found.points[loop]) for loop in different)])
         return {loop: slice(int(ends[place]), int(ends[place + 1])) for place, loop in enumerate(different)}
 
     @cached_property
     def loops(self) -> Mapping[int, tuple[OneLoop, float]]:
-        """All different loops; each has a noise weight: the common weight divided by the loop's rms noise at the start."""
+        """All different loops, each with its noise weight: the common weight divided by the loop's rms noise at the start."""
         begun = one_loops(self.within, self.found)
         return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 

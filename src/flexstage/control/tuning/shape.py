@@ -23,9 +23,9 @@ _BELOW = 0.45
 class Shape:
     """Shape of a loop's controller: PI, or PID with its derivative filtered at `corner` [Hz]; `count` notches, sampled every `step` [s].
 
-    A point contains logarithms: of the proportional gain k_p, of the ratio k_i/k_p [1/s] of the integral gain, for a PID of the ratio
-    k_d/k_p [s] of the derivative gain, and of each notch's frequency [Hz], depth and damping. `slowest` [1/s] is the lower limit of
-    k_i/k_p; it keeps the zero and the integrator's tail from becoming too slow.
+    A point contains the logarithms of the proportional gain k_p, of k_i/k_p [1/s] with the integral gain k_i and, for a PID, of k_d/k_p [s]
+    with the derivative gain k_d. The logarithms of each notch's frequency [Hz], depth and damping follow. `slowest` [1/s] is the lower
+    limit of k_i/k_p; it keeps the zero and the integrator's tail from becoming too slow.
     """
 
     count: int

@@ -36,9 +36,9 @@ _STANDS_OUT = 2.0
 class View:
     """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
 
-    `responses` (v, f, k, n) are the frequency responses from n strokes to the poses of k loops at `frequencies` (f,) [Hz]. They exist only
-    for the first v offsets, which are within the spread. `modes` [Hz] and `ratios` are the frequencies and damping ratios of the plant's
-    modes.
+    `responses` (v, f, k, n) are the frequency responses from n strokes to the poses of k loops at `frequencies` (f,) [Hz]. They are
+    computed only for the first v offsets, which are within the spread. `modes` [Hz] and `ratios` are the frequencies and damping ratios of
+    the plant's modes.
     """
 
     plant: Plant

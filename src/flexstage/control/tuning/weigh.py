@@ -85,8 +85,8 @@ def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: flo
 
     Improvements are relative to the known outcome `against`. The method is the downhill simplex (Nelder & Mead, Computer Journal 7 (1965)
     308), with coefficients that depend on the dimension (Gao & Han, Computational Optimization and Applications 51 (2012) 259). The simplex
-    starts from the best point of a grid. The grid extends around the first mode and includes the controller `begun`. If the crossover at
-    `bandwidth` [Hz] of `begun` is above the modes, the grid is around `begun`. The search is deterministic.
+    starts from the best point of a grid. The grid extends around the first mode and includes the controller `begun`. If the crossover
+    `bandwidth` [Hz] of `begun` is above the modes, the grid has only points around `begun`. The search is deterministic.
     """
 
     def cost(point: Array) -> float:
@@ -170,7 +170,7 @@ def merit(spec: TuningSpec, found: Outcome) -> float:
 
 
 def worth(within: Field, found: Outcome) -> float:
-    """Compute the merit minus the weighted violations of bounds. Peaks count only for gain errors and mode shifts within the spread."""
+    """Compute the merit minus weighted violations of bounds. Peaks are limited only for gain errors and mode shifts within the spread."""
     spec = within.spec
     limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in within.variants])
     return merit(spec, found) - _STEEP * _excess(spec, found, limits)
