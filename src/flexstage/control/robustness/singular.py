@@ -13,8 +13,8 @@ _POWERS = (4.0, 32.0, 256.0, 2048.0)
 def balance(matrices: Array) -> Array:
     """Balance each matrix (f, n, n) by diagonal scaling e^{d_i} M_ij e^{-d_j}. Returns the logarithms d (f, n).
 
-    By Osborne's rule, off-diagonal norms of rows and columns become equal. The result is a start value for `upper_bound`, and often good
-    enough.
+    By Osborne's rule, the off-diagonal norms of each row and the column with the same index become equal. The result is a start value for
+    `upper_bound`, and often good enough.
 
     >>> balance(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
     [[-1.151293, 1.151293]]

@@ -74,7 +74,7 @@ class ServedStage:
         return self._port
 
     async def start(self) -> None:
-        """Listen, and start simulated time. Raises `DesignError` if the port is in use."""
+        """Listen for clients, and start simulated time. Raises `DesignError` if the port is in use."""
         try:
             self._server = await asyncio.start_server(self._client, HOST, self._port, limit=_READ)
         except OSError as error:

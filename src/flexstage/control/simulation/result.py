@@ -26,8 +26,8 @@ class Simulated(InNotebook):
     column for each of `channels`. Four series (n, m) [m] contain strokes from the bias, with a column for each of `actuators`. `command` is
     the controller's output, `asked` the amplifier input (after inverse model and converter), `given` the amplifier output (after limits),
     and `stroke` the stroke at the stage. `volts` (n, m) are NaN for a stack without voltage data. `readings` (n, g) have a column for each
-    of `gauges`, in its unit. `saturated` and `slewing` (m,) are the fractions of samples at a range limit, and at a speed limit only.
-    `out_of_range` (g,) is the fraction of samples with a reading out of range or lost; the last valid reading then replaces it.
+    of `gauges`, in its unit. `saturated` (m,) is the fraction of samples at a range limit, `slewing` (m,) the fraction at a speed limit
+    only. `out_of_range` (g,) is the fraction of samples with a reading out of range or lost; the last valid reading then replaces it.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")

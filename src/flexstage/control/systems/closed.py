@@ -32,8 +32,8 @@ class LoopBreak(Enum):
 class Loop:
     """Interconnected plant and controller: the basis of margins, stability, budgets and simulations.
 
-    `plant` is the continuous plant, and `held` is the same plant between hold and sampler. `controller` is the specified controller without
-    its inputs `applied.<actuator>`, which a linear loop does not use. `states` names the states of `system`.
+    `plant` is the continuous plant, and `held` is the same plant discretised by `zero_order_hold`. `controller` is the specified controller
+    without its inputs `applied.<actuator>`, which a linear loop does not use. `states` names the states of `system`.
 
     `system` is the closed loop. Inputs: `reference.<c>` [m, rad]; `noise.<gauge>` [m] added to a reading, `noise.<actuator>` [m] added to a
     command; ground motions `ground.<c>`; wrenches such as `platform.fx`, constant between samples. Outputs: motions `platform.<c>`,

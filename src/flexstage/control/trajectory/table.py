@@ -27,8 +27,8 @@ else:  # slow import: all record formats
 class Table:
     """Piecewise linear poses `values` (n, c) [m, rad] at increasing `times` (n,) [s]; constant before the first and after the last.
 
-    `source` names the origin in findings. Raises `DesignError` for times that do not increase, values that are not finite, and shapes that
-    do not match.
+    In findings, `source` names the origin of the table. Raises `DesignError` for times that do not increase, values that are not finite,
+    and shapes that do not match.
 
     >>> way = Table(np.array([0.0, 1.0, 3.0]), np.array([[0.0], [2e-6], [0.0]]), ("x",))
     >>> way.at(np.array([0.5, 2.0, 5.0])).ravel().tolist()

@@ -176,7 +176,7 @@ class Variant:
 
 
 def variants(spec: TuningSpec) -> tuple[Variant, ...]:
-    """Return the plant variants of a specification, the model's first.
+    """Return the plant variants of a specification, the unchanged model first.
 
     >>> from flexstage.control.tuning.laws import PI_FAMILY
     >>> [each.offset for each in variants(TuningSpec(PI_FAMILY, spread=0.02))]

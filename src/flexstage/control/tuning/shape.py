@@ -39,17 +39,17 @@ class Shape:
         return 2 if self.corner is None else 3
 
     def law(self, point: Array) -> PI | PID:
-        """Return the law of a point."""
+        """Return the control law of a parameter point."""
         proportional, *ratios = np.exp(point[: self.gains]).tolist()
         gains = [proportional * ratio for ratio in ratios]
         return PI(proportional, gains[0]) if self.corner is None else PID(proportional, gains[0], gains[1], self.corner)
 
     def notches(self, point: Array) -> tuple[Notch, ...]:
-        """Return the notches of a point."""
+        """Return the notches of a parameter point."""
         return tuple(Notch(*map(float, np.exp(each))) for each in self._notch_points(point))
 
     def point(self, law: PI | PID, notches: tuple[Notch, ...]) -> Array:
-        """Return the point of a law and its notches."""
+        """Return the parameter point of a control law and its notches."""
         others = [law.integral, *([law.derivative] if isinstance(law, PID) else [])]
         gains = [law.proportional, *(each / law.proportional for each in others)]
         numbers = [number for each in notches for number in (each.frequency, each.depth, each.damping)]

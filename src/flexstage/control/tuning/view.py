@@ -85,7 +85,7 @@ class View:
 
     @cached_property
     def kept(self) -> dict[Any, Any]:
-        """Cache of frequency-independent search data: responses of notches, observers."""
+        """Cache of search data that do not depend on the tried crossover: responses of notches, observers."""
         return {}
 
     @cached_property
