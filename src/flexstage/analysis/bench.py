@@ -79,7 +79,7 @@ class StageResults:
 
     @staticmethod
     def all_along(benches: Sequence[StageResults], name: str, at: float | None = None) -> None:
-        """Compute `along` for the benches of several designs of the same structure together."""
+        """Compute and store the results of `along` for several designs of the same structure together."""
         new = [each for each in benches if (name, at) not in each._points]  # noqa: SLF001
         if not new:
             return
@@ -89,7 +89,7 @@ class StageResults:
             bench._points[name, at] = each  # noqa: SLF001
 
     def one(self, place: int, share: float) -> StageResults:
-        """Results of one design of a batch, with `share` times the imaginary parts of its numbers added. Recent results are cached."""
+        """Results of one design of a batch. `share` times its imaginary part is added to each number. Recent results are cached."""
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()
@@ -125,7 +125,7 @@ class StageResults:
         return self._corrections[point]
 
     def stopped(self, point: str) -> tuple[Matrix, StrokeLimits]:
-        """Strokes per unit motion of a point, with lost motion corrected, and the limits set by strokes and by the stops within reach."""
+        """Strokes and motions at stops per unit motion of a point, with lost motion corrected, and their limits (see `with_stops`)."""
         return with_stops(self.mechanism, self.kinematics, self.correction(point), self.limits, point)
 
     @cached_property
@@ -276,7 +276,7 @@ class StageResults:
         return linear_map_error(self.mechanism, self.kinematics, self.limits).worst
 
     def arm(self, point: str) -> Array:
-        """Vector from the platform's reference point to another point of the platform; refuses points of other bodies."""
+        """Vector from the platform's reference point to another point of the platform; raises `DesignError` for points of other bodies."""
         if point == PLATFORM:
             return np.zeros(3)
         body, position = self.assembly.points[point]

@@ -61,9 +61,8 @@ class Analysis(InNotebook):
     """All results of one model of a stage. A field without a result is `None`; `missing` has the reason by field name.
 
     `response` is the frequency response from the actuators' inputs to the platform's twist and all gauges, `transmissibility` the one from
-    the ground to the platform. Only the lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, and
-    `units` (each distinct isolated unit). The `verdicts` on requirements always come from the lumped model, whatever the model of the other
-    results.
+    the ground to the platform. Only the lumped model gives drift, error budget, `units` (each distinct isolated unit), and `deflection` and
+    `buckling` under permanent load. The `verdicts` on requirements are always computed by the lumped model.
 
     `loaded` is the effect of the permanent load. If the permanent load is significant, statics, modes, responses (`under_load`), lost
     motion, drift, error budget and their verdicts are for the loaded stage. All other results and the linear model `linear` belong to the

@@ -87,7 +87,7 @@ class BodyFlexibility:
 
 @dataclass(frozen=True, eq=False)
 class BodyEstimates:
-    """Flexibilities of bodies (`found`), and the `reasons` why other bodies have none, by body."""
+    """Estimated flexibilities of bodies (`found`), and the `reasons` for missing estimates, both by body name."""
 
     found: tuple[BodyFlexibility, ...]
     reasons: Mapping[str, str]

@@ -124,7 +124,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def variants(
     mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
 ) -> Iterator[LinearModel]:
-    """Build one model for each item of `kept`; an item maps names of restricted parts to their new (elastic, free) DOFs.
+    """Build one model for each mapping in `kept`, from the names of restricted parts to their new DOFs (elastic, free).
 
     The stage is expanded only once. Raises `DesignError` as `lumped` does.
 

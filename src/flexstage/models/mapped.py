@@ -59,7 +59,7 @@ class LeverStiffness:
 
     @property
     def gain(self) -> Annotated[Number, RATIO]:
-        """Output per stroke, the first term of equation 11: (r_2 / r_1) / (1 + eps)."""
+        """Output per stroke, the first term of equation 11: (r_2 / r_1) / (1 + eps), with eps = `softness`."""
         return self.long_arm / self.short_arm / (1.0 + self.softness)
 
     @property
@@ -175,9 +175,10 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
 def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
     """Compute the compliance [m/N] of all links that carry an actuator's load, in actuator coordinates, by virtual work.
 
-    The compliance is the sum of f^T C f over the links: f is the wrench in the locked DOFs of a link in equilibrium, with strokes fixed; C
-    is the link's compliance. The platform wrench w loads only this actuator and no guide: V^T w = R_a^T e, where V contains the platform's
-    ideal motions, R_a the strokes per ideal motion, and e is 1 for this actuator. Free DOFs carry no load; ideal joints are rigid.
+    The compliance is the sum of f^T C f over the links. With strokes fixed, f is the equilibrium wrench in the locked DOFs of a link; C is
+    the link's compliance. The platform wrench w loads only this actuator and no guide: V^T w = R_a^T e. Here V contains the platform's
+    ideal motions, R_a the strokes per ideal motion; e is 1 for this actuator and 0 for the others. Free DOFs carry no load; ideal joints
+    are rigid.
 
     Returns `None` if statics does not determine the wrenches (redundant constraints or a guide), if a link has no known compliance, or if
     all links are rigid.

@@ -47,16 +47,16 @@ def budget(
     """Compute the error budget at a platform point for a box of displacements (half widths [m, rad]) and a temperature change [K].
 
     Lost motion and drift (strokes fixed) are computed by the lumped model, for the loaded stage if the permanent load is significant. Drift
-    is computed with the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None`
-    means 1 K if drift is known. If expansion coefficients are missing and the change is 0 or `None`, drift is omitted, and `reasons` has a
-    note.
+    is computed with the ground material of the description (`ground_of`), unless `drifted` is specified. If the temperature change is
+    `None`, drift is computed for 1 K. If expansion coefficients are missing and the change is 0 or `None`, drift is omitted, and `reasons`
+    has a note.
 
     xi are the displacements, and a = R_a xi the ideal strokes. J = dx/da is the ideal Jacobian, V are the ideal motions, T = dx/da is the
-    gain of the elastic model, and Lambda = I - R_a V^+ T its lost motion. All these contributions are largest absolute values:
+    gain of the elastic model, and Lambda = I - R_a V^+ T its lost motion. All contributions are largest absolute values:
 
     - lost motion: J diag(Lambda) R_a xi;
     - crosstalk: J (Lambda - diag(Lambda)) R_a xi, plus the motion outside the ideal motions;
-    - with lost motion corrected by the gains a = (R_a V^+ T)^-1 R_a xi: only the residual T a - V xi, listed as crosstalk;
+    - crosstalk with lost motion corrected: the residual T a - V xi, with the corrected strokes a = (R_a V^+ T)^-1 R_a xi;
     - linear map: finite kinematics minus linear kinematics at the corners;
     - gauge noise: `coverage` standard deviations;
     - quantisation: half a step of every gauge with the worst signs;
@@ -64,8 +64,8 @@ def budget(
 
     For a force-driven stage in open loop, the forces are u = (V^+ C)^+ xi, where C is the static gain of the elastic model. The budget then
     has the parasitic motion C u - V xi instead of lost motion, crosstalk and linear map. `noise` has one-sided power spectral densities of
-    actuator inputs (current, force, stroke), wrenches and ground motion. The resulting rms motion is relative to the ground, and integrated
-    over the `band` [Hz] (default: the band of `response`).
+    actuator inputs (current, force, stroke), wrenches and ground motion. The resulting rms motion is relative to the ground; its density is
+    integrated over the `band` [Hz] (default: the band of `response`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)

@@ -30,7 +30,7 @@ class ErrorBudget(Result):
 
     `missing` names unknown sources (e.g. unspecified gauge noise), which are NaN and omitted from the sums. `ground` is the ground material
     assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. For a force-driven
-    stage, the forces in both cases are computed by the elastic model.
+    stage, `ideal` and `corrected` are equal, because the elastic model gives the forces.
     """
 
     ideal: Matrix

@@ -80,7 +80,7 @@ class Extreme(Enum):
 
 @dataclass(frozen=True, eq=False)
 class MeasureKind:
-    """Kind of measure: the `form` of its key, its `quantity` (`about`: for rotations), and the function `work` that computes its SI value.
+    """Kind of measure: the `form` of its key, its `quantity` (for rotations: `about`), and the function `work` that computes its SI value.
 
     The first sentence of the docstring of `work` defines the measure.
 
@@ -227,7 +227,7 @@ def directed_stiffness(bench: StageResults, asked: Measure) -> Array:
 
 
 def direction_of(name: str, where: str = "direction") -> Array:
-    """Read the unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a rotation. Raises `DesignError` at `where`.
+    """Read the unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a rotation. Errors name the location `where`.
 
     >>> direction_of("r(0,3,4)").tolist()
     [0.0, 0.6, 0.8]

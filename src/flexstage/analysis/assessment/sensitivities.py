@@ -43,8 +43,8 @@ class Sensitivities(Result):
 
     `frequency` (P, k) contains the derivatives of k frequencies, in Hz per SI unit of the parameter; for the modes of a cluster, these are
     the derivatives of the mean frequency. `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the
-    eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi, converted to frequency slopes; Phi are the shapes of the modes, lambda is the mean of
-    their squared angular frequencies, dK and dM are the derivatives of stiffness and mass. These slopes are valid for changes of a single
+    eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi, converted to frequency slopes. Phi are the mode shapes, lambda is the mean squared
+    angular frequency, dK and dM are the derivatives of stiffness and mass. The slopes in `one_sided` are valid for changes of a single
     parameter and cannot be added. `gain` and `loss` (P, n) are the derivatives of each actuator's gain and lost motion; n = 0 if the
     strokes do not determine the platform's motion. `missing` has the reasons for absent results.
     """
@@ -230,7 +230,7 @@ def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> 
 
 
 def project(contributions: Contributions, shapes: Array) -> Array:
-    """Compute Phi^T dA Phi (p, k, k) for mode shapes Phi (n, k) and the derivative dA of a matrix with complex steps, by contributions.
+    """Compute Phi^T dA Phi (p, k, k) for mode shapes Phi (n, k): dA is the derivative of a sum of `contributions` with complex steps.
 
     >>> from flexstage.models.linear.model import Contribution
     >>> one = np.ones((1, 1))

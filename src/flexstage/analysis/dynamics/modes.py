@@ -71,9 +71,9 @@ class Modes(Result):
     the fraction of the platform's static compliance. `energies` (..., b, k) are the kinetic-energy fractions of b bodies and links, named
     in `bodies`. `chosen` (..., k) marks platform modes.
 
-    `names`, `in_plane` and `platform` (indices of the platform modes) describe the modes of the first design. A mode with equal fractions
-    of several bodies is named after all of them. `limit` determines only the number of listed modes. If `partial`, the stage is large and
-    only its lowest modes were computed.
+    `names`, `in_plane` and `platform` (indices of the platform modes) describe the modes of the first design. A local mode in which several
+    bodies have equal energy fractions is named after all of them. `limit` determines only the number of listed modes. If `partial`, the
+    stage is large and only its lowest modes were computed.
     """
 
     frequencies: Array
@@ -119,7 +119,7 @@ class Modes(Result):
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
-        """Return the body or link (several if equal) with the largest kinetic-energy fraction in a mode (first design), and this share."""
+        """Return the body or link (several if equal) with the largest energy fraction in a mode of the first design, and this fraction."""
         shares = first_design(self.energies, 2)[:, index]
         most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
         return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
@@ -159,11 +159,11 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Shin & Moon, equation 28).
 
-    The modal compliances are summed in ascending order of frequency. A platform mode is a mode with which this sum reaches a tenth of the
+    The modal compliances are summed in ascending order of frequency. A mode is a platform mode if it raises this sum above a tenth of the
     platform's static compliance in one more direction (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The
-    basis of a cluster is rotated so that shapes align with the platform's axes. Shapes without platform motion align with the coordinates
-    that move most. The result contains all computed modes; `limit` [Hz] affects only `Modes.listed`. Displacements are small. For a large
-    stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
+    basis of a cluster is rotated: shapes with platform motion align with the platform's axes, other shapes with the coordinates that move
+    most. The result contains all computed modes; `limit` [Hz] affects only `Modes.listed`. Displacements are small. For a large stage
+    (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

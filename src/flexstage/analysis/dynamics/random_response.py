@@ -67,8 +67,8 @@ class Spectrum(CheckedFields):
 class RandomResponse(Result):
     """One-sided densities (..., f, p) [unit^2/Hz] and rms values (..., p) [unit] of outputs, with the contribution of each input.
 
-    `shares` (..., p, m) are the mean squares due to each input. The inputs are uncorrelated, so the sum of mean squares is rms^2. `method`
-    is the method of integration.
+    `shares` (..., p, m) are the mean squares of each output due to each input. The inputs are uncorrelated, so the sum of an output's mean
+    squares is rms^2. `method` is the method of integration.
     """
 
     frequencies: Annotated[Array, FREQUENCY, Called("frequency")]

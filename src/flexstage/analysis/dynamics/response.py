@@ -61,12 +61,12 @@ def response(
 def transmissibility(
     model: LinearModel, outputs: str | Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
 ) -> Response:
-    """Compute the transmissibility (..., f, p, 6): absolute motion of outputs per motion of the ground at the platform's reference.
+    """Compute the transmissibility (..., f, p, 6): absolute motion of the outputs per unit motion of the ground.
 
     T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. K, D and M are stiffness, damping and mass matrices. C gives the outputs for
-    motion relative to the ground, C_r for rigid motion with the ground; M_b is the inertia force per acceleration of the ground. Damping
-    acts on motion relative to the ground. At low frequency, T of the platform's twist tends to the unit matrix. T of gauges and stress
-    resultants tends to zero, because they depend only on relative motion.
+    motion relative to the ground, C_r for rigid motion with the ground. M_b is the inertia force per acceleration of the ground; the ground
+    moves about the platform's reference point. Damping acts on motion relative to the ground. At low frequency, T of the platform's twist
+    tends to the unit matrix. T of gauges and stress resultants tends to zero, because they depend only on relative motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

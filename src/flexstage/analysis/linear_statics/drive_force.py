@@ -45,7 +45,7 @@ class DriveForce(Result):
 
     @property
     def total(self) -> Array:
-        """Excess of the force over the ideal guide's force along each of f coordinates, as a fraction of the latter."""
+        """Excess of the force over the ideal guide's force, divided by the ideal guide's force, along each of f coordinates."""
         return np.sum(self.excess.values, axis=-2)
 
     @property

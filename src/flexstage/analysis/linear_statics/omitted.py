@@ -23,8 +23,8 @@ Restrictions = Mapping[str, tuple[Freedoms, Freedoms]]
 class Omitted:
     """Responses of a simple theory and the full theory, and the effect of each omitted degree of freedom.
 
-    `changes` are the changes of the simple response if a single degree of freedom (`lever_notch.x`) regains its elasticity. `interaction`
-    is the effect of combinations: the full response minus the simple response, minus the sum of all changes.
+    `changes` are the changes of the simple response if a single degree of freedom (`lever_notch.x`) becomes elastic. `interaction` is the
+    effect of combinations: the full response, minus the simple response and all `changes`.
     """
 
     output: str
@@ -40,15 +40,15 @@ class Omitted:
 
     @property
     def unexplained(self) -> Annotated[float, RATIO]:
-        """Magnitude of `interaction`, divided by that of the full response."""
+        """Magnitude of `interaction`, divided by the magnitude of the full response."""
         return abs(self.interaction / self.full)
 
 
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static response of an output to an input, the names in `channel`, with restricted and with full parts.
 
-    `simple` maps parts or links (`vertical/pivot`) to their elastic and their free degrees of freedom; all others are locked. Each locked
-    or freed degree of freedom regains its elasticity individually. Batches are not supported.
+    `simple` maps parts or links (`vertical/pivot`) to their elastic and their free degrees of freedom; all others are locked. One at a
+    time, each locked or freed degree of freedom is made elastic. Batches are not supported.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.cases.double_triangle import EQUATION_3

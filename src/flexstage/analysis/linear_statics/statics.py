@@ -94,7 +94,8 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     Strokes are fixed, and displacements small. The compliance is C_read K^-1 C_load^T: K is the stiffness matrix of the model, and C_read
     and C_load map its coordinates to the twists of the two points. If the platform has fewer than six degrees of freedom in the model (the
     mapped model of a guide), the stiffness is infinite along the locked degrees of freedom. All entries of the stiffness, and tensors
-    derived from it, are then NaN; in a batch, the first design decides. Along an axis without stiffness, the compliance is infinite.
+    derived from it, are then NaN. In a batch, the first design determines which degrees of freedom are locked. Along an axis without
+    stiffness, the compliance is infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -147,9 +148,9 @@ class FreedomStiffness(Result):
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
     """Compute the stiffness along each ideal motion and along each constraint of a stage with fewer than six ideal motions.
 
-    `found` is the statics at a point of the platform. The stiffness of a degree of freedom is the reciprocal of its diagonal entry in the
-    compliance if the others are free, and its diagonal entry in the stiffness if the others are fixed. It is NaN for a locked degree of
-    freedom. Returns None if the stage has six ideal motions, or if read-out and load points differ.
+    `found` is the statics at a point of the platform. With the other degrees of freedom free, the stiffness of a degree of freedom is the
+    reciprocal of its diagonal entry in the compliance. With the others fixed, it is the diagonal entry in the stiffness. It is NaN for a
+    locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and load points differ.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -219,9 +220,9 @@ def directional(tensor: Array) -> DirectionalStiffness:
 def centre_of_stiffness(stiffness: Array) -> Array:
     """Compute the centre of stiffness (..., 3) relative to the reference: the axial vector of the antisymmetric part of -K_tt^-1 K_tr.
 
-    K_tt and K_tr are the blocks of the stiffness that map translations and rotations to forces. At the centre, this coupling of rotations
-    and forces is minimal. If it vanishes at a point c, K_tr = -K_tt [c]x, with the cross-product matrix [c]x. Loncaric (1987) gives another
-    definition of the centre of stiffness.
+    K_tt and K_tr are the blocks of the stiffness that map translations and rotations to forces. At the centre, the coupling K_tr is
+    minimal. If the coupling vanishes at a point c, K_tr at the reference is -K_tt [c]x, with the cross-product matrix [c]x. Loncaric (1987)
+    gives another definition of the centre of stiffness.
 
     >>> from flexstage.spatial.frame import transport
     >>> carry = transport(np.array([0.0, 0.0, -0.025]))

@@ -37,7 +37,7 @@ _SWITCH = {"on": 1.0, "off": 0.0}
 
 @dataclass(frozen=True, eq=False)
 class DrivePath:
-    """Load path: `values` (k,) [SI] of the `drive`, zero at the static equilibrium under `loads` and a fraction `weight` of the weight.
+    """Load path: `values` (k,) [SI] of the `drive`, measured from the static equilibrium under `loads` and a fraction `weight` of gravity.
 
     `locked` coordinates are fixed at their static equilibrium values.
     """
@@ -99,7 +99,7 @@ def _require_continuation(result: equilibrium.State) -> None:
 
 
 def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
-    """Return the physical quantity of a drive. Raises `DesignError` at `where` if the drive is neither a coordinate nor a load.
+    """Return the physical quantity of a drive. Raises `DesignError` (location `where`) if the drive is neither a coordinate nor a load.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drive_quantity(expand(parallelogram()), "platform.rz", "here").noun

@@ -46,7 +46,7 @@ _ENDS = 8
 
 @dataclass(frozen=True, eq=False)
 class LoadCase(CheckedFields):
-    """Load case: one load `grows` at an operating point; it consists of loads by name, which can be the weight or specified forces.
+    """Load case: one load grows at an operating point. `grows` contains this load by components, e.g. the weight or the specified forces.
 
     `stays` contains the constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. A displaced
     coordinate remains free under the force that displaces it, unless the coordinate is `locked`. `gravity` is the fraction of the weight.
@@ -145,12 +145,12 @@ def buckling_factors(
     """Compute the critical load factor of every load case and stroke end of a design, at large displacements.
 
     The loads are the weight with payloads, and the specified forces with preloads; for a path in `[paths]`, also the loads in its `hold`.
-    One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. A design
-    without paths has other operating points: both stroke ends of every actuator (for at most eight actuators), and the corner of the
-    strokes that is worst by linearised buckling.
+    One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. Without
+    paths, the other operating points are both stroke ends of every actuator (for at most eight actuators), and the corner of the strokes
+    that is worst by linearised buckling.
 
-    At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is held at its value. Load factors are
-    computed up to `most`.
+    At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is held at its value. The largest
+    computed load factor is `most`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [case.place for case in buckling_factors(parallelogram(), most=2.0).cases]

@@ -105,10 +105,10 @@ class LoadEffect:
 def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     """Compute the effect of the permanent load on a stage; `None` for a batch of designs or an unknown load factor.
 
-    By linearised buckling, the permanent load reduces no stiffness by a larger fraction than the reciprocal of the load factor, and
-    increases no stiffness by a larger fraction than `Stability.stiffens`. A change that may be 1 % or more is computed in the nominal
-    position. A significant change is computed again with large displacements. Stages with flexures that are not straight when free are
-    always computed with large displacements. Raises `DesignError` if the stage has no elastic model.
+    Linearised buckling gives upper bounds for the relative change of any stiffness: the reciprocal of the load factor for a decrease, and
+    `Stability.stiffens` for an increase. If a bound is 1 % or more, the change is computed in the nominal position. If this change is 1 %
+    or more, it is computed again with large displacements. Stages with flexures that are not straight when free are always computed with
+    large displacements. Raises `DesignError` if the stage has no elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> load_effect(parallelogram()).model is None
@@ -138,7 +138,7 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
 
 
 def loaded_lumped_model(mechanism: Mechanism) -> LinearModel:
-    """Return the lumped model. If the permanent load is significant, return `LoadEffect.links`, linearised about the loaded state.
+    """Return the lumped model or, if the permanent load is significant, `LoadEffect.links` (linearised about the loaded state).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> "geometric" in loaded_lumped_model(parallelogram()).stiffness

@@ -78,7 +78,7 @@ class Stability:
 
     @property
     def refusals(self) -> tuple[Finding, ...]:
-        """Error if the stage buckles in its nominal position under permanent load; empty if it is stable."""
+        """Error if the stage buckles in its nominal position under permanent load; otherwise an empty tuple."""
         least = float(np.min(np.real(self.dead)))
         if least >= 1.0:
             return ()

@@ -129,7 +129,7 @@ class Points:
 
     @cached_property
     def columns(self) -> dict[str, tuple[Callable[[], Array], str]]:
-        """Function that computes each column, and the unit of the column, by the column's name."""
+        """Columns by name: the function that computes the column, and the column's unit."""
         return dict(_columns(self))
 
     def column(self, name: str) -> Array:

@@ -42,8 +42,8 @@ class StackLine(Result):
 class PlatformLine(Result):
     """Force-displacement lines (..., f) of the platform along each coordinate, commanded by the ideal mapping.
 
-    `travel` [m, rad] is the motion without load in both directions; `stiffness` [N/m, N m/rad] is for a load along this coordinate only.
-    `blocking` [N, N m] is the blocked force: the load that returns the platform to zero.
+    `travel` [m, rad] is the largest motion without load, equal in both directions; `stiffness` [N/m, N m/rad] is for a load along this
+    coordinate only. `blocking` [N, N m] is the blocked force: the load that returns the platform to zero.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -72,7 +72,8 @@ class PlatformLine(Result):
 def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     """Compute the intersection of each stack's line F = k (u - s) with the stage's line F = k_s s.
 
-    The model gives the stack's force per stroke, k k_s / (k + k_s), from which k_s follows.
+    F is the force, s the displacement, u the free stroke; k and k_s are the stiffnesses of stack and stage. The model gives the force per
+    free stroke, k k_s / (k + k_s), from which k_s follows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -38,7 +38,7 @@ class Clearance(Result):
 
     `intrusions` are the outlines inside the clear aperture (empty without an aperture). `opening` (..., 2) [m] is the size of the aperture.
     `low` and `high` are corners (..., 3) [m] of the bounding box. `envelope` is the size (..., 3) [m] of the envelope, or `None`. `extreme`
-    names the outermost outlines (low x, y, z, high x, y, z; first design).
+    names the outermost outline at the low ends of x, y, z, then at the high ends (first design).
     """
 
     TABLE: ClassVar[Layout] = Layout("Clearance", "table reached_by", head="axis")

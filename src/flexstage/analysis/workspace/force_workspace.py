@@ -42,10 +42,10 @@ class ForceWorkspace(Result):
     """Force workspace: elastic travel of a point along single coordinates, in both directions.
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. If `alone` is
-    true, the other ideal coordinates are zero; otherwise they are free. `bounds` (coordinates x causes) [m, rad] are the limits of
-    continuous motion by cause (NaN if unspecified). `short` are the limits for short use, at the `duty` of a coil. `current`, `voltage`,
-    `power` and `rise` (coordinates x coils) are the values for holding each coordinate at its continuous limit: i, R i, i^2 R, and i^2 R
-    times the thermal resistance [K]. `unmoved` are ideal motions that no input drives.
+    true, the other ideal coordinates are zero; otherwise they are free. `bounds` (coordinates x causes) [m, rad] are the limits of the
+    motion in continuous use, by cause (NaN if unspecified). `short` are the limits in short use, at the `duty` of a coil. `current`,
+    `voltage`, `power` and `rise` (coordinates x coils) are the values for holding each coordinate at its continuous limit: i, R i, i^2 R,
+    and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions that no input drives.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -109,13 +109,14 @@ def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearM
     """Compute the force workspace of a stage with force actuators: the limits of the elastic motion along every ideal motion.
 
     The elastic model gives C = dx/du for strokes and forces u. With as many inputs as motions, the inputs per motion are G = C^-1. With
-    more inputs, G is the least-norm inverse of C, relative to the input limits. Coils limit the motion by their peak and continuous
-    currents, heat i^2 R through the thermal resistance, amplifier voltage R i, largest force and magnetic travel. Stroke limits, the nearer
-    side of each stop, and yield in a hinge under permanent load also limit the motion. The computation is linear.
+    more inputs, G minimises the sum of u_i^2 / limit_i, with the least limit of each input u_i. Coils limit the motion by their peak and
+    continuous currents, heat i^2 R through the thermal resistance, amplifier voltage R i, largest force and magnetic travel. Other limits
+    are the actuator strokes, the nearer side of each stop, and yield in a hinge under the motion and the permanent load. The computation is
+    linear.
 
-    An input drives a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. The compliance of the coordinate is c,
-    and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal motion, or no
-    motion that an input drives.
+    An input drives a coordinate if the resulting motion exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the
+    coordinate, and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal motion,
+    or no motion that an input drives.
     """
     if not kinematics.thrusts or not kinematics.mobility:
         raise refuse("force_workspace", "no force actuator moves the stage", "Use the workspace of its strokes")
@@ -318,7 +319,7 @@ def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], 
 
 
 def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
-    """Return the limits of every input: strokes from zero voltage, or symmetric forces (of a coil, the least short-use limit).
+    """Return the limits of every input: a stroke is measured from zero voltage; a force or current has its least limit in short use.
 
     An input is also limited so that, acting alone, it displaces its coil by at most half the magnetic travel. Raises `DesignError` for a
     force actuator without a limit.

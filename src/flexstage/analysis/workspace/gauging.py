@@ -30,7 +30,7 @@ class GaugeRange(Result):
     `swing` is the largest reading and `limit` half the range, in the gauge's unit, which `units` contains (m or rad). `radius` [m] is each
     gauge's distance from the platform's axis. `largest_here` [m] is the largest radius at the gauge's own angle for which the reading is
     within the range; `largest_anywhere` [m] is the largest such radius at any angle. An infinite radius means that the gauge is within its
-    range everywhere. NaN means that the gauge is outside even on the axis, or not between platform and ground.
+    range everywhere. NaN means that the gauge exceeds its range even on the axis, or that it is not between platform and ground.
     """
 
     TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")
@@ -65,9 +65,10 @@ class GaugeRange(Result):
 
 
 class PoseResolution(Result):
-    """Pose resolution: platform motion (..., 6) [m, rad] for one resolution step of every gauge, computed with S = V (R_s V)^+.
+    """Pose resolution: platform motion (..., 6) [m, rad] for one resolution step of every gauge.
 
-    The columns of S are single gauges, including gauges in sums. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are the gauges'
+    The matrix S = V (R_s V)^+ maps gauge readings to platform motion: V contains the ideal motions, R_s the readings per platform motion.
+    Each column of S is for a single gauge, also for a gauge in a sum. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are the gauges'
     resolution r and noise. `worst` is the motion if the reading errors of all gauges equal one step and have the worst signs, sum |S_ij|
     r_j. `rms` is the motion if the gauges have independent errors of one step, (sum S_ij^2 r_j^2)^(1/2). `noise` is the rms motion due to
     the specified noise densities over the gauges' bandwidths (NaN if unspecified).

@@ -131,8 +131,9 @@ class LoadShare(Result):
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     """Compute the distribution of weight (bodies, links, payloads) and specified forces over the stacks, with strokes fixed.
 
-    Every external force f at a point is a generalised force on the coordinates of its body; the resulting stack forces are C K^-1 f.
-    Displacements are small. All stacks are assumed to transmit tension, even stacks without preload and tensile limit; check `pull`.
+    External forces are converted to generalised forces f on the coordinates of their bodies. The stack forces are C K^-1 f: K is the
+    stiffness matrix, and C maps coordinates to stack forces. Displacements are small. All stacks are assumed to transmit tension, even
+    stacks without preload and tensile limit; check `pull`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -35,7 +35,7 @@ class SecondOrder:
     """Second-order error of linear kinematics over a box of motions: the largest relative `error`, which occurs in the part `link`.
 
     `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty if there is none), which displaces a guide sideways.
-    `held_twice` is true if redundant constraints may also stretch flexures.
+    `held_twice` is true if the stage has redundant constraints, which may also stretch flexures.
     """
 
     error: Annotated[float, RATIO]
@@ -67,8 +67,8 @@ class SecondOrder:
 class SmallMotion:
     """Rotation `turn` [rad] and `bend` (deflection over length) of every link and the platform, for unit coordinates (L, f).
 
-    `limit` (L) is the largest rotation [rad], limited by second-order error or, if `closes`, by contact of notch faces. `span` (L) is the
-    bending length of a part [m]; zero for bending at a point.
+    `limit` (L) is the largest permitted rotation [rad]. At this rotation, notch faces touch if `closes` is true; otherwise, the
+    second-order error reaches its limit. `span` (L) [m] is the bending length of a part, zero if the part bends at a point.
     """
 
     coordinates: tuple[str, ...]
@@ -85,7 +85,7 @@ class SmallMotion:
         return self.turn @ half, self.bend @ half
 
     def use(self, command: Mapping[str, Number]) -> tuple[float, str]:
-        """Return the largest ratio of motion to limit over all links for a box of displacements (half widths), and the link's name."""
+        """Return the largest ratio of rotation or bend to its limit, and the link's name, for a box of displacements (half widths)."""
         turned, bent = self._moved(command)
         shares = np.maximum(turned / self.limit, bent / _SMALL)
         worst = int(np.argmax(shares > (1.0 - 1e-9) * np.max(shares)))

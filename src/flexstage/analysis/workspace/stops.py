@@ -35,9 +35,9 @@ def with_stops(
 ) -> tuple[Matrix, StrokeLimits]:
     """Return mapping and limits with an additional row for every stop within reach: low <= n^T x <= high.
 
-    Here n^T x is the motion at the stop, for ideal motions x. The coordinates of `mapping` are motions of `point`. Stops that even all
-    strokes together cannot reach are omitted. An open side of a stop gets a finite limit out of reach. Bodies between ground and platform
-    move as in the ideal model (small motions).
+    Here n^T x is the motion at the stop, for ideal motions x. The coordinates of `mapping` are motions of `point`. A stop is omitted if no
+    combination of strokes can reach it. A missing low limit of a stop is replaced by a finite limit out of reach. Bodies between ground and
+    platform move as in the ideal model (small motions).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -57,14 +57,14 @@ class StrokeLimits:
         return np.where(high, self.high[..., None, :], self.low[..., None, :])
 
     def points(self, depth: int) -> Array:
-        """Return the corners as points (2^n, ..., n), with at least `depth` batch axes in between, to broadcast with many designs."""
+        """Return the corners (2^n, ..., n) with at least `depth` batch axes, so that they broadcast with a batch of designs."""
         return beside(np.moveaxis(self.corners, -2, 0), depth)
 
 
 class SingleAxis(Result):
     """Strokes of the platform along one coordinate with the others fixed at zero, from `low` to `high` (..., f) [m, rad].
 
-    `limiting` names the actuator, or stop (`stops/end`), that ends each stroke (first design, `high` side).
+    `limiting` names the actuator or stop (`stops/end`) that determines each `high` limit of the first design.
     """
 
     TABLE: ClassVar[Layout] = Layout("Single-axis strokes", "table limiting", notes=("One coordinate at a time, the others at zero.",))
@@ -121,7 +121,7 @@ class Utilisation(Result):
 
 
 def beside(points: Array, depth: int) -> Array:
-    """Return points (k, ..., n) with at least `depth` batch axes between first and last axis, to broadcast with a batch of designs.
+    """Return points (k, ..., n) with at least `depth` axes between first and last axis, so that they broadcast with a batch of designs.
 
     >>> beside(np.zeros((64, 6)), 1).shape
     (64, 1, 6)

@@ -84,9 +84,9 @@ def compliance_root(model: LinearModel, rows: Array) -> Array:
 def participation(root: Array, motions: Array, values: Array) -> Array:
     """Compute the participation p = C^-1/2 phi / omega (..., 6, k) of k modes in the compliance C = R^T R; `root` is R (..., r, 6).
 
-    `motions` (..., 6, k) are the platform twists phi, `values` (..., k) the eigenvalues omega^2. The squared length of a mode's column p is
-    the fraction of the compliance that the mode contributes in its own direction. Over all modes, the products p p^T add up to the unit
-    matrix. Directions without compliance are excluded.
+    `motions` (..., 6, k) are the platform twists phi, `values` (..., k) the eigenvalues omega^2. The squared length of the column p of a
+    mode is the mode's fraction of the compliance along the mode's own motion. Over all modes, the products p p^T add up to the unit matrix.
+    Directions without compliance are excluded.
 
     >>> participation(np.diag([0.5] * 6), np.eye(6), np.full(6, 4.0)).diagonal().tolist()  # springs of 4 N/m, masses of 1 kg
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]

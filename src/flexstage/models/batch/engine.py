@@ -79,7 +79,7 @@ def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None
     """Plan a family of designs, which differ in the numbers at the addresses.
 
     With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. Within the ranges,
-    computing the input of a design then takes less time than solving it. Without a fit, or outside the ranges, the input is computed from
+    computing the input of a design is then faster than solving the design. Without a fit, or outside the ranges, the input is computed from
     the description.
 
     Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.

@@ -31,7 +31,7 @@ Draw = Callable[[tuple[Array, ...]], Mechanism]
 class Family:
     """Designs that differ in P numbers from a nominal design, `mechanism`; `nominal` (P,) are the numbers of the nominal design.
 
-    `points` (3,) are the nominal reference points of bodies that do not specify one. All designs use these points.
+    `points` contains the nominal reference point (3,) of each body that does not specify one. All designs use these points.
     """
 
     mechanism: Mechanism
@@ -71,7 +71,7 @@ def _number(mechanism: Mechanism, address: str) -> Any:
 
 
 def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
-    """Build a family of descriptions: the function `draw` returns the description for P numbers, called `names`.
+    """Build a family from a function `draw` that returns the description for P numbers, which have the names `names`.
 
     `nominal` (P,) are the numbers of the nominal design.
 

@@ -106,8 +106,8 @@ def topology(assembly: Assembly) -> Topology:
 class Elimination:
     """Elimination order of bodies, with the kept body last.
 
-    `edges` are the pairs of bodies that the graph, filled by the elimination, joins: the body eliminated first, then the other. The numbers
-    in `edges`, which are sorted, are positions in the elimination order.
+    `edges` are the pairs of connected bodies, including connections that the elimination adds: the body eliminated first, then the other.
+    `edges` is sorted; its numbers are positions in the elimination order.
     """
 
     order: tuple[int, ...]

@@ -77,7 +77,7 @@ def kernel_name() -> str:
 class Start:
     """Start values of the iteration: inertial forces (six for each body, m) of m nominal modes, and a `shift` between two eigenvalues.
 
-    The first `needed` modes are computed one by one.
+    `needed` is the number of modes that are computed one by one.
     """
 
     force: Array
@@ -97,7 +97,7 @@ class Job:
 def solve_designs(library: ctypes.CDLL, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> tuple[Array, Array]:
     """Compute the ascending platform eigenvalues (b, k) of b designs from their `numbers` (numbers, b).
 
-    Also returns a mask (b,) of the designs whose result is proven.
+    Also returns a mask (b,) of the designs whose result is proven to be correct.
     """
     job, count = kernel_job(library.flexstage_width(), tables, numbers, start, choice), numbers.shape[1]
     if library.flexstage_modes(ctypes.byref(job.task)):

@@ -30,7 +30,7 @@ _TOGETHER = 256
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Fit of numbers (`rows`) that depend on the same `variables` (d,): Chebyshev `degrees` (terms, d), `coefficients` (terms, rows)."""
+    """Fit of the numbers `rows` by Chebyshev polynomials of `variables` (d,): `degrees` (terms, d) and `coefficients` (terms, rows)."""
 
     variables: Array
     degrees: Array
@@ -38,7 +38,7 @@ class Piece:
     rows: Array
 
     def basis(self, table: Array) -> Array:
-        """Return the terms (terms, designs): products of the polynomials in `table` (degree, P, designs)."""
+        """Return the terms (terms, designs) of the fit: products of the polynomials in `table` (degree, P, designs)."""
         result = np.ones((len(self.degrees), table.shape[-1]))
         for place, variable in enumerate(self.variables):
             result *= table[self.degrees[:, place], variable]
@@ -49,8 +49,9 @@ class Piece:
 class Surface:
     """Polynomial fit of the kernel input of a family for values from `low` to `high` (P,).
 
-    `fixed` (numbers,) are the numbers of the nominal design, used where no piece fits them. `error` is the largest error at random designs,
-    relative to the scale of each number. Numbers below the diagonals of symmetric matrices are not fitted; they have the values in `fixed`.
+    `fixed` (numbers,) is the kernel input of the nominal design, used for numbers without a fit. `error` is the largest error at random
+    designs, relative to the scale of each number. Numbers below the diagonals of symmetric matrices are not fitted; they have the values in
+    `fixed`.
     """
 
     low: Array

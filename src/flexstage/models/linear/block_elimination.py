@@ -49,7 +49,7 @@ class ConstraintSolution:
     """Solution of the constraints: the motions of N coordinates that satisfy them.
 
     `last` is the last elimination, of the platform's coordinates and the strokes. `idle` contains a free internal mode (a row (N,)) for
-    each unconstrained coordinate. `redundant` lists the numbers of the constraints in each state of self-stress.
+    each unconstrained coordinate. `redundant` lists the indices of the constraints in each state of self-stress.
     """
 
     last: Elimination
@@ -58,7 +58,7 @@ class ConstraintSolution:
 
 
 def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> ConstraintSolution:
-    """Eliminate constraints (1, N) over the twists of `bodies` bodies (the platform first) and the strokes.
+    """Eliminate constraints (one row (1, N) each) on the twists of `bodies` bodies, the platform first, and on the strokes.
 
     `scale` (N,) makes the coordinates comparable.
 

@@ -23,8 +23,8 @@ _RANK = 1e-9
 class Blockage:
     """Cause of an immobile stroke: the locked DOFs that work against it, largest force first, and the DOFs to free.
 
-    `against` and `free` contain names `link.freedom`. If `together` is false, it is sufficient to free any one DOF of `free`; otherwise,
-    all must be freed.
+    `against` and `free` contain the names of DOFs (`link.freedom`). If `together` is false, it is sufficient to free any one DOF of `free`;
+    otherwise, all must be freed.
 
     `ends` (ground or platform) lack a hinge: the actuator joins them directly, and its own locked DOFs prevent its stroke.
     """
@@ -36,10 +36,10 @@ class Blockage:
 
 
 def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: frozenset[str]) -> Blockage:
-    """Find the locked DOFs that block the stroke in column `stroke` of the scaled `constraints` (m, N), which have `names`.
+    """Find the locked DOFs that block a stroke: the column `stroke` of the scaled `constraints` (m, N), whose rows have `names`.
 
-    The first six columns belong to the platform. After the returned DOFs are freed, the stroke must move the platform. DOFs in `intended`
-    (ideal DOFs of parts) are preferred.
+    The first six columns belong to the platform. After the returned DOFs are freed, the stroke must move the platform. If possible, DOFs in
+    `intended` (ideal DOFs of parts) are returned.
 
     >>> rows = np.zeros((3, 7))
     >>> rows[0, [0, 6]], rows[1, 0], rows[2, 1] = (1.0, -1.0), 1.0, 1.0

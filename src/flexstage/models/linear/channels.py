@@ -179,7 +179,7 @@ def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> di
 def exerted_wrenches(assembly: Assembly) -> dict[str, Array]:
     """Compute the wrench (..., 6, m) of each input on the second body of each force actuator's link, in the link frame.
 
-    The opposite wrench acts on the first body. Wrench and opposite wrench act at the link's centre.
+    The opposite wrench acts on the first body. Both wrenches act at the link's centre.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

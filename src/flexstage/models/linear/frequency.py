@@ -90,11 +90,12 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
 
     The model is M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u. The method of solution depends on the damping:
 
-    - Modal and Rayleigh damping: exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f. The residual
-      R = C K^-1 - C Phi Lambda^-1 Phi^T is the static response of DOFs without inertia.
-    - Structural damping: direct solution at each frequency with the matrix K* - omega^2 M. A stroke u exerts K_p (1 + j eta_p) u; a link
-      force has the same loss factor.
-    - Dampers of parts (`LinearModel.viscous`) couple modes: direct solution at each frequency, with any damping law.
+    - Modal and Rayleigh damping: exact superposition of all modes, H = C Phi d^-1 Phi^T (B + omega^2 M_b) + R B + D_f. Here d has the
+      diagonal omega_r^2 - omega^2 + 2 j zeta_r omega_r omega. The residual R = C K^-1 - C Phi Lambda^-1 Phi^T is the response of DOFs
+      without inertia; for Rayleigh damping, it is divided by 1 + j omega beta.
+    - Structural damping: direct solution at each frequency with the matrix K* - omega^2 M. A stroke u of part p exerts K_p (1 + j eta_p) u;
+      the part's force has the same loss factor eta_p.
+    - Dampers of parts (`LinearModel.viscous`), with any damping law: direct solution at each frequency, because dampers couple modes.
 
     A frequency of zero gives the static gain.
 
@@ -241,7 +242,7 @@ def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Da
 
 
 def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
-    """Compute Phi^T B and Phi^T M_b (..., k, m): modal forces per input and per input acceleration (with opposite sign).
+    """Compute Phi^T B and Phi^T M_b (..., k, m): modal forces per input and, with opposite sign, per input acceleration.
 
     >>> one = np.ones((1, 1))
     >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), 3.0 * one, 0.0 * one, one, 0.0 * one)

@@ -167,7 +167,7 @@ class Kinematics(Result):
 
     @property
     def telling(self) -> tuple[str, ...]:
-        """Gauges and sums of gauges that determine the pose: all that are not members of a sum."""
+        """Gauges and sums of gauges that determine the pose: all except the members of sums."""
         taken = {member for members in self.sums.values() for member in members}
         return tuple(name for name in self.gauges if name not in taken)
 
@@ -181,7 +181,7 @@ class Kinematics(Result):
 
     @property
     def seen(self) -> Array:
-        """Readings (..., t, f) of the `telling` gauges per unit of each ideal motion."""
+        """Readings (..., t, f) of the t gauges in `telling` per unit of each ideal motion."""
         if not self.sums:
             return self.sensing @ self.motion
         return self.sensing[..., [self.gauges.index(name) for name in self.telling], :] @ self.motion
@@ -228,7 +228,7 @@ class Kinematics(Result):
 
     @property
     def blockages(self) -> tuple[Finding, ...]:
-        """Warnings of immobile strokes: the links that block them, largest force first, and the DOFs to free. Equal warnings are merged."""
+        """Warnings of immobile strokes: blocking links, sorted by decreasing force, and DOFs to free. Equal warnings are merged."""
         return join_findings(
             Finding(
                 name, f"the stroke cannot move: it is blocked by the locked degrees of freedom of {_by_link(each.against)}", _freeing(each)

@@ -257,7 +257,7 @@ def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Arr
 
 
 def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
-    """Compute the smallest eigenvalues mu (k,) of T x = mu K x, ascending, and shapes (n, k) with x^T K x = 1, for T in `taken`.
+    """Compute the smallest eigenvalues mu (k,) of T x = mu K x, ascending, and shapes (n, k) with x^T K x = 1; `taken` is T.
 
     Returns fewer than `count` values if further eigenvalues are too close together to converge, for example many near zero. The start
     vector is constant.

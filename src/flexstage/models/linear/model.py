@@ -46,7 +46,7 @@ Contributions: TypeAlias = Mapping[str, Contribution]
 
 @dataclass(frozen=True, eq=False)
 class LinearModel(InNotebook, CheckedFields):
-    """Linear model: M q'' + D q' + K q = B u - M_u u'', y = C q + D_u u, with K and M as sums of named contributions.
+    """Linear model: M q'' + D q' + K q = B u - M_u u'', y = C q + D_u u, with K and M as sums of named contributions G^T k G.
 
     - `force` (..., n, m): direct generalised forces of the inputs.
     - `imposed` (..., r, m): for each stiffness contribution, the deformation that inputs impose (the free stroke of a stack): B = force +
@@ -60,7 +60,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     Batch axes come first. An array without batch axes is valid for every design. `viscous` contains damping matrices (..., d, d) [N s/m] of
     parts, by the name of the stiffness contribution. Damping matrices multiply the rates of the first d elastic deformations (G q minus the
-    imposed deformation). The model's damping law acts in addition. Link forces do not include forces of dampers.
+    imposed deformation). These dampers act in addition to the model's damping law. Link forces do not include forces of dampers.
 
     `idle` names removed coordinates, which have no stiffness (free internal modes). The kept coordinates are M-orthogonal to the removed
     modes, so that frequencies and shapes do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the k
@@ -109,7 +109,7 @@ class LinearModel(InNotebook, CheckedFields):
         return _freeze(assemble(self.inertia, len(self.coordinates)))
 
     def grounded(self, square: Number = 1.0) -> Array:
-        """Return K with springs on the floating motions, which give them the eigenvalue `square` [1/s^2]; other modes are unchanged."""
+        """Return K plus springs that give each floating motion the eigenvalue `square` [1/s^2]; other modes are unchanged."""
         if self.floating is None:
             return self.stiffness_matrix
         momentum = self.inertia_matrix @ self.floating
@@ -157,7 +157,7 @@ class LinearModel(InNotebook, CheckedFields):
         return float(np.median(stiff[used] / heavy[used])) if used.any() else 1.0
 
     def follow(self, strains: Mapping[str, Array]) -> Array:
-        """Compute the motion (..., n, k) of least energy when `strains` (..., r, k) of parts are added: -K^-1 sum G^T k strain."""
+        """Compute the motion of least strain energy if `strains` (..., r, k) are added to the strains of parts: -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
         forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())

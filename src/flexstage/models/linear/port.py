@@ -19,7 +19,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 class Ports:
     """Selected inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
 
-    - `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m).
+    - Shapes: `force` and `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m).
     - For ground motion, z is relative to the ground, but y is absolute. For inputs that impose no motion, `inertial` is zero.
     - `lost` (..., n, m): imaginary part of the force with structural damping (see `LinearModel.loss_matrix`).
     - `loss` (..., p): the loss factor of the link for an output that is a link force; zero for other outputs.

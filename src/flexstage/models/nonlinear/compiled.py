@@ -54,7 +54,7 @@ class _Task(ctypes.Structure):
 
 @dataclass(frozen=True, eq=False)
 class CompiledResult:
-    """Poses of b cases after the iterations; `status`, number of iterations `count`, last step `moved`, last residual `lack` (b,)."""
+    """Poses of b cases after the iterations, with `status`, number of iterations `count`, last step size `moved`, last residual `lack`."""
 
     pose: Pose
     status: Array
@@ -104,8 +104,8 @@ def tables(model: Nonlinear) -> Tables | None:
 def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, other: OtherTerms | None) -> CompiledResult:
     """Iterate every case in C; requires `kernel` and `tables`.
 
-    With `other` terms, which are valid only at the start, only one step is computed. The result equals `newton.iterate` up to rounding. The
-    result of a case is bit-identical whatever the other cases are.
+    If `other` terms are specified, only one step is computed, because these terms are valid only at the start. The result equals
+    `newton.iterate` up to rounding. The result of a case is bit-identical whatever the other cases are.
     """
     library = kernel()
     assert library is not None  # noqa: S101  (the caller has asked)

@@ -177,7 +177,7 @@ def equilibrium(
     load is increased in steps, then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
     Without `start`, the result is on the path of equilibria from the unloaded stage, along which all loads and fixed coordinates grow in
-    proportion. The result is NaN if a limit point, a bifurcation or an end of the path is before the full load. Other equilibria are
+    proportion. The result is NaN if the path reaches a limit point, a bifurcation or its end before the full load. Other equilibria are
     permitted if `options.past` is true, if `options.arcs` is 0, if the unloaded stage is unstable, and beyond an imperfect bifurcation.
 
     Raises `DesignError` for unknown names.
@@ -322,7 +322,7 @@ def _request(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, N
 def state(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, labels: tuple[tuple[int, ...], tuple[str, ...]]
 ) -> State:
-    """Build the state of a solution; `labels` are the shape of its cases and the names of its fixed coordinates."""
+    """Build the state of a solution; `labels` contains the shape of the cases and the names of the fixed coordinates."""
     shape, held = labels
     status, iterations, residual, reached = (getattr(solution, name).reshape(shape) for name in RESULT_FIELDS)
     return State(model, loads, hold, solution.pose, shape, status, iterations, residual, reached, held)

@@ -73,7 +73,7 @@ def gradients(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Compute gradients (a, ...) of results with respect to the numbers in SI units at `names` (a addresses), for constant loads.
+    """Compute gradients (a, ...) of results with respect to the numbers (in SI units) at the a addresses `names`, for constant loads.
 
     By the implicit function theorem, the coordinates q of an equilibrium change with a number p by dq/dp = - K^-1 dF/dp. K is the tangent
     stiffness, including the inner unknowns of flexures. F is the residual; its derivative is computed at the known state. Residual and

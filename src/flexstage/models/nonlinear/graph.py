@@ -25,10 +25,10 @@ from flexstage.spatial.rotation import cross, exponential, logarithm
 class FlexureState:
     """State of a group of l flexures at a pose of b cases: frames and arms (l, b, ...) in space, configurations, and responses.
 
-    Vectors in space are `lever` (h) from the first body's reference point to the end, `arm` (a_j) from the second body's reference point to
-    the end, and `onset` (a_i) from the first body's reference point to the start. `weight` (l, b, 3) is the weight per length, divided by E
-    I / L^3 (bending stiffness E I, flexure length L), in the start frames (absent without gravity). `gap` (l, b, 6) is the gap, translation
-    and rotation, between the end and the second body.
+    Vectors in space: from the first body's reference point, `onset` (a_i) points to the start and `lever` (h) to the end; `arm` (a_j)
+    points from the second body's reference point to the end. `weight` (l, b, 3) is the weight per length, divided by E I / L^3 (bending
+    stiffness E I, flexure length L), in the start frames (absent without gravity). `gap` (l, b, 6) contains the gaps in translation and
+    rotation between the end and the second body.
 
     `wrench` (l, b, 6) is the wrench that the second body exerts on the flexure's end, after the flexure's own unknowns are solved.
     """
@@ -47,7 +47,7 @@ class FlexureState:
 
 @dataclass(frozen=True, eq=False)
 class OtherTerms:
-    """Terms of all elements except flexures (links about centres, fixed coordinates): `residual` (b, n) and `stiffness` (b, n, n)."""
+    """Terms of all elements except flexures (see `other_terms`): `residual` (b, n) and `stiffness` (b, n, n)."""
 
     residual: Array
     stiffness: Array
@@ -96,7 +96,7 @@ def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates)
 
 
 def other_terms(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates) -> OtherTerms | None:
-    """Assemble the terms of links about centres, superelements and fixed coordinates; `None` if the stage has none."""
+    """Assemble the terms of links with a 6x6 stiffness, superelements and fixed coordinates; `None` if the stage has none."""
     if not model.hinges.names and not model.elements and not len(hold.body):
         return None
     residual, kept = _nothing(model, pose, hold)
@@ -256,7 +256,7 @@ def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum
 
 
 def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
-    """Return the poses of the bodies of links about centres."""
+    """Return the poses of both bodies of each link in `model.hinges`."""
     first, second = model.hinges.first, model.hinges.second
     return Ends(*(_gather(each, which) for which in (first, second) for each in (pose.position, pose.turn)))
 

@@ -92,7 +92,7 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
 
     The cases of the state are the batch axes of the model.
 
-    - Fixed coordinates are released: the stage is free under their reactions, which keep their directions. The reaction at a fixed rotation
+    - Fixed coordinates are released: their reactions act as loads of constant direction on the free stage. The reaction at a fixed rotation
       is the moment conjugate to the component of the rotation vector. Fixed coordinates in `locked` remain fixed.
     - Plate fields are quasi-static, without mass.
     - The stiffness is symmetrised. The stiffness has one contribution per link, and the contribution `geometric`.

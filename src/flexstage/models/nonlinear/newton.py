@@ -183,7 +183,7 @@ class _Step:
 
 
 def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[EquilibriumSolution]:
-    """Iterate several designs of equal structure, each with its cases. Elements except flexures of all designs are evaluated together."""
+    """Iterate the cases of several designs of equal structure. Elements other than flexures are evaluated for all designs together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
         return [_search_compiled(task, options) for task in tasks]
@@ -275,7 +275,7 @@ def motion(model: Nonlinear, step: Array, length: float) -> Array:
 
 
 def lack(model: Nonlinear, system: System) -> Array:
-    """Return the largest residual (b,): end gaps of flexures, forces on amplitudes divided by a stiffness, and residuals of locked DOFs."""
+    """Return the largest residual (b,): gaps at flexure ends, scaled residuals of amplitudes, and residuals of locked and fixed DOFs."""
     largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
         stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]

@@ -106,7 +106,7 @@ class Nonlinear(InNotebook):
 
     @property
     def freedoms(self) -> int:
-        """Number of body coordinates."""
+        """Number of the coordinates of all bodies."""
         return 6 * len(self.bodies)
 
     def body(self, name: str) -> int:

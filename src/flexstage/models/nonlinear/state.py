@@ -35,9 +35,9 @@ class SolverOptions(CheckedFields):
     of a step is the largest of its translations divided by the longest flexure length, its rotations in radians, and its changes of flexure
     amplitudes.
 
-    `limit` is the largest permitted step; translations are divided by the stage's `reach`. Failed cases are solved with load steps, down to
-    2^-`halvings` of the load, then by arc length with at most `arcs` steps. With `past`, the path also passes limit points: the load may
-    decrease and then increase to its whole value, as in a snap-through.
+    `limit` is the largest permitted step; translations are divided by the stage's `reach`. If a case fails, the load is applied in steps,
+    down to 2^-`halvings` of the load; if this fails, by arc length in at most `arcs` steps. With `past`, the path also passes limit points:
+    the load may decrease and then increase to its whole value, as in a snap-through.
     """
 
     step: float = 1e-9

@@ -21,7 +21,7 @@ class Sum(Protocol):
         """Add a block (b, r, c) of every case at r `rows` and c `columns`."""
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add l blocks (l, b, r, c), each at its first row and first column, `rows` (l,) and `columns` (l,)."""
+        """Add l blocks (l, b, r, c). `rows` (l,) and `columns` (l,) contain the first row and the first column of each block."""
 
     def total(self, kept: Array) -> Array | tuple[Any, ...]:
         """Return the matrix with only the rows and columns `kept`: (b, n, n), or sparse matrices."""
@@ -39,7 +39,7 @@ class Dense:
         self._whole[:, rows, columns] += block
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add l blocks (l, b, r, c), each at its first row and first column, `rows` (l,) and `columns` (l,)."""
+        """Add l blocks (l, b, r, c). `rows` (l,) and `columns` (l,) contain the first row and the first column of each block."""
         high, wide = blocks.shape[-2:]
         for row, column, block in zip(rows, columns, blocks, strict=True):
             self._whole[:, row : row + high, column : column + wide] += block
@@ -62,7 +62,7 @@ class Blocks:
         self.spread(np.array([rows.start]), np.array([columns.start]), np.broadcast_to(block, shape))
 
     def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
-        """Add l blocks (l, b, r, c), each at its first row and first column, `rows` (l,) and `columns` (l,)."""
+        """Add l blocks (l, b, r, c). `rows` (l,) and `columns` (l,) contain the first row and the first column of each block."""
         self._found.append((rows, columns, blocks))
 
     def total(self, kept: Array) -> tuple[Any, ...]:

@@ -22,7 +22,7 @@ from flexstage.models.nonlinear.state import Loads, Pose
 
 @dataclass(frozen=True)
 class Step:
-    """Step of the tree: a flexure by group and number, the body at its outer end, and whether its `start` is nearer to the ground."""
+    """Step of the tree: a flexure (`group` and number `link`), the body at its outer end, and whether its start is nearer to the ground."""
 
     group: int
     link: int

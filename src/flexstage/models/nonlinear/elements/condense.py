@@ -38,7 +38,7 @@ def system(tangent: Tangent) -> Array:
 def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
     """Solve for the response to end motions and to the residual; NaN if singular.
 
-    `gap` (..., 6) is the gap, translation and rotation, between the end and the second body.
+    `gap` (..., 6) contains the gaps in translation and rotation between the end and the second body.
     """
     matrix = system(tangent)
     size = tangent.hessian.shape[-1]

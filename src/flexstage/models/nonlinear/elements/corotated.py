@@ -21,15 +21,15 @@ _TURNS = 8
 
 @dataclass(frozen=True, eq=False)
 class Corotated:
-    """Superelement: body numbers (p,) of its p ports, nominal arms (p, 3) from the bodies, port axes (p, 3, 3), in stage axes.
+    """Superelement with p ports: body numbers (p,), nominal arms (p, 3) from bodies to ports, port axes (p, 3, 3), in stage axes.
 
     - `place` (p, 3): nominal positions of the ports.
-    - `relative` (6 (p - 1), 6 p): matrix that converts port motions in stage axes to the strains on which `stiffness` (6 (p - 1), 6 (p -
-      1)) acts, as in the linear model.
+    - `relative` (6 (p - 1), 6 p): matrix from port motions in stage axes to strains, as in the linear model. `stiffness` (6 (p - 1), 6 (p -
+      1)) converts strains to forces.
     - `squares` (m,): squared angular frequencies of the inner modes.
-    - `inertia` (6 p + m, 6 p + m): mass matrix of the motions of the ports, in their axes, and of the modes.
+    - `inertia` (6 p + m, 6 p + m): mass matrix for the port motions in port axes and the m inner modes.
     - `mass`; `centre` (3,): nominal centre of mass.
-    - `share` (6 p, 3): loads on the ports per acceleration of the element.
+    - `share` (6 p, 3): loads on the ports per unit acceleration of the element.
     """
 
     name: str

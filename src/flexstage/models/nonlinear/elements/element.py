@@ -44,12 +44,12 @@ class Shape:
 class Tangent:
     """Residual `gradient` (..., b, q) of the amplitudes, and the blocks of its derivative (docs/nonlinear.md, 6).
 
-    The derivatives with respect to the amplitudes are `hessian` (..., b, q, q), H, of the residual, `reach` (..., b, 3, q), B_f, of the end
-    position, and `turning` (..., b, 3, q), J_th, of the end rotation. `soft` (..., b, 3, 3), F_n, is the derivative of the end position
-    with respect to the end force.
+    With respect to the amplitudes, `hessian` H (..., b, q, q) is the derivative of the residual, `reach` B_f (..., b, 3, q) of the end
+    position, and `turning` J_th (..., b, 3, q) of the end rotation. `soft` F_n (..., b, 3, 3) is the derivative of the end position with
+    respect to the end force.
 
-    `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are derivatives of the mean position with respect to amplitudes, end force and
-    weight (absent without weight).
+    Only with weight: `hung` (..., b, 3, q) is the derivative of the mean position with respect to the amplitudes, `swayed` (..., b, 2, 3,
+    3) with respect to end force and weight.
     """
 
     gradient: Array
@@ -62,7 +62,7 @@ class Tangent:
 
 
 def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = None) -> Shape:
-    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is that of `graph.flexure_weight`."""
+    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is as in `graph.flexure_weight`."""
     rule = gauss(law.modes.shape[-3])
     count = law.modes.shape[-1]
     curvature = _apply(law.modes, strain[..., :count])
@@ -119,10 +119,10 @@ def tangent(law: FlexureLaw, strain: Array, moment: Array, config: Shape) -> Tan
 
 
 def mode_paths(law: FlexureLaw, config: Shape) -> tuple[Array, Array, Array]:
-    """Compute displacements (..., b, n, 3, k) and rotations of the points per unit curvature amplitude: fixed start, constant end force.
+    """Compute displacements (..., b, n, 3, k) and rotations of the points per unit curvature amplitude, at constant end force.
 
-    The function also returns the integrals (..., b, 2, n, 3, 3) of the compliance R C_n R^T (see `Shape`) to each point: displacement per
-    force and per weight (docs/nonlinear.md, 25).
+    The start is fixed. Also returns the displacements of the points per unit end force and per unit weight, (..., b, 2, n, 3, 3), as
+    integrals of the compliance R C_n R^T (see `Shape`, and docs/nonlinear.md, 25).
     """
     rule, modes = config.rule, law.modes[..., None, :, :, :]
     forces = _forces(rule, config.force, config.weight)

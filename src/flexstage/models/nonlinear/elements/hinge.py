@@ -30,7 +30,7 @@ class Hinges:
     - `strut` (l,): length [m] of a strut, which turns about both ends; zero for another link, whose stiffness is about its centre.
     - `bow` (l, 6, 6, 6): a matrix G for each deformation; foreshortening adds d^T G d / 2 to this deformation, where d are all six
       deformations.
-    - `locked` (c, 2): pairs of link and DOF without deformation.
+    - `locked` (c, 2): link number and DOF number of each DOF without deformation.
 
     If the cases belong to different designs, all arrays except `first`, `second` and `locked` have an axis of cases, (l, b, ...).
     """
@@ -61,7 +61,7 @@ class Ends:
 
 
 def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
-    """Compute deformations (..., 6) and derivatives (..., 6, 12) with respect to the motions of both bodies; poses (..., l, b, 3)."""
+    """Compute deformations (..., l, b, 6), and derivatives (..., l, b, 6, 12) with respect to the motions of both bodies."""
     turn = _by_case(hinges.turn, 2)
     frame, other = ends.first_turn @ turn, ends.second_turn @ turn
     arm = (ends.first_turn @ _by_case(hinges.arm_first, 1)[..., None])[..., 0]
@@ -104,7 +104,7 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """Compute internal wrenches (..., l, b, 6): elastic minus those of inputs (b, m) and preloads, plus forces `held` of locked DOFs."""
+    """Compute link wrenches (..., l, b, 6): elastic wrenches, minus wrenches of inputs (b, m) and preloads, plus `held` in locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 

@@ -85,12 +85,12 @@ def strains(state: State) -> Strains:
 
 
 def law_reserve(state: State) -> tuple[float, str]:
-    """Return the remaining range of the link laws at a state (1 undeformed, 0 at the limit), and a clause that names the limit.
+    """Return the least remaining fraction of the links' permitted deformation (1: undeformed; 0: limit), and a clause that names the limit.
 
     The strain limit of flexures is 5 %. The 6x6 stiffness of a link or superelement is a law for small motions, and is limited to motions
     at which such a law has an error of about 10 %. The limits are a rotation of 0.46 rad between the ends, and a displacement of 0.3 of the
     stage's diagonal (for a superelement, of the diagonal of its ports). For a spring with a length, the displacement limit is this length.
-    Links without stiffness have no limit.
+    Deformations without stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges
     used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure has a strain of {_STRAIN:.0%} there")]

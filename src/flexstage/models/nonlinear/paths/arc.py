@@ -63,7 +63,7 @@ class ProportionalLoading:
 
     @property
     def plain(self) -> bool:
-        """Whether the factor changes only inputs, in which residuals are linear."""
+        """Whether the factor changes only inputs, so that the residual is linear in the factor."""
         return not (np.any(self.gain.gravity) or np.any(self.gain.constant) or np.any(self.moved))
 
     @property
@@ -124,9 +124,9 @@ def continue_path(loading: ProportionalLoading, begin: Point, length: float, poi
 def march(loading: ProportionalLoading, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
     """Generate equilibria beyond `begin`; the step length is controlled by the path curvature and the prediction errors.
 
-    A step is repeated with a shorter length if the tangent rotates too far, the equilibrium is too far from the tangent, or slope or
-    stiffness differs too much from its prediction. This repetition prevents a step from passing over two events. The path ends if the step
-    is too small a fraction of the longest previous step.
+    A step is repeated with a shorter length in three cases: the tangent rotates too far, the equilibrium is too far from the tangent, or
+    slope or stiffness differs too much from its prediction. This repetition prevents a step from passing over two events. The path ends if
+    the step is too small a fraction of the longest previous step.
     """
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):
@@ -264,7 +264,7 @@ def point_at(
 def complete_paths(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
 ) -> EquilibriumSolution:
-    """Continue all cases that reached only a fraction of their load by arc length, up to the whole load or to the limit point."""
+    """Continue by arc length all cases that reached only a fraction of their load, up to the whole load or to the limit point."""
     partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])

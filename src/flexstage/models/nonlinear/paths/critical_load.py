@@ -63,8 +63,8 @@ class Critical:
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
     """Return the number (...) of independent motions that decrease the potential energy of each case: 0 if stable, -1 without equilibrium.
 
-    This number is the count of negative eigenvalues of the stage stiffness and of the system of each flexure's inner unknowns (without its
-    six multipliers).
+    This is the number of negative eigenvalues of the stage stiffness and of the flexures' stiffnesses with fixed ends (without
+    multipliers).
 
     Fixed coordinates in `locked` remain fixed (default: all). Other fixed coordinates are released, and their reactions act as loads.
     """
@@ -95,9 +95,9 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     coordinates in `hold` keep their values. Stability is evaluated with the coordinates in `locked` fixed (default: all coordinates in
     `hold`); the others are free, and their reactions act as loads.
 
-    The path starts without load, or from the `known` state under the full load. Arc-length steps resolve the path's curvature and the
-    change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (to a relative
-    `tolerance` of the factor).
+    The path starts without load or, if `known` is specified, from this state under the full load. Arc-length steps resolve the path's
+    curvature and the change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero
+    (to a relative `tolerance` of the factor).
 
     The function raises:
 

@@ -40,7 +40,7 @@ Reserve = Callable[[Point], tuple[float, str]]
 
 @dataclass(frozen=True, eq=False)
 class FollowedPath:
-    """Followed path: last stable point, first critical point if any, load factor of an imperfect bifurcation, and final factor."""
+    """Followed path: last stable point, first critical point (`event`), load factor of an imperfect bifurcation (`bend`), final factor."""
 
     last: Point
     event: Point | None
@@ -53,8 +53,8 @@ def follow_to_event(
 ) -> FollowedPath:
     """Follow a path to the first zero of the stiffness, or to the factor `most`; `length` is the length of the first step.
 
-    Raises `LowerBoundError` if the path ends earlier, without a further equilibrium. With a `reserve`, the path also ends where the reserve
-    is zero, or well beyond an imperfect bifurcation.
+    Raises `LowerBoundError` if the path ends earlier, without a further equilibrium. If `reserve` is specified, the path also ends where
+    the reserve is zero, or well beyond an imperfect bifurcation.
     """
     last, bent = begin, None
     for _ in range(_JUMPS):

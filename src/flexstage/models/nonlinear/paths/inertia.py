@@ -24,7 +24,7 @@ def kept_rows(model: Nonlinear, held: Sequence[str], locked: Sequence[str]) -> l
 def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
     """Count the independent motions (b,) that decrease the potential energy.
 
-    The count is the number of negative eigenvalues of the stage and of its flexures, without those due to constraints and multipliers.
+    The count is the number of negative eigenvalues of the stiffnesses of stage and flexures, minus one per constraint and multiplier.
     """
     count = _descents(whole, kept, model.freedoms) - (len(kept) - model.freedoms)
     for bent in whole.bent:
@@ -53,9 +53,9 @@ def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Ar
 
 
 def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
-    """Compute the lowest eigenvalue of the scaled systems of the flexures' inner unknowns, and the flexure's name; 1 without flexures.
+    """Compute the lowest eigenvalue of the scaled stiffnesses of single flexures with fixed ends, and the flexure's name.
 
-    The eigenvalues of the six multipliers of each flexure are excluded.
+    The eigenvalues of the six multipliers of each flexure are excluded. Without flexures, the result is 1.
     """
     weakest = [
         (float(least), name)
@@ -74,7 +74,7 @@ def stiffness_scale(model: Nonlinear, whole: System) -> Array:
 
 
 def indefinite(tangent: Tangent) -> Array:
-    """Build the symmetric form of a flexure's system: the rows of its end with reversed signs."""
+    """Build the symmetric form of a flexure's system of equations: the six rows for the motion of the end have reversed signs."""
     matrix = system(tangent)
     matrix[..., matrix.shape[-1] - 6 :, :] *= -1.0
     return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))

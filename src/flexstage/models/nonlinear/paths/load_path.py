@@ -52,7 +52,7 @@ class LoadPath:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Limit points and bifurcations, in order. A bifurcation has the mean of the two adjacent values."""
+        """Limit points and bifurcations, in order. The value of a bifurcation is the mean of the two adjacent drive values."""
         return tuple(itertools.chain.from_iterable(map(self._between, range(len(self.values) - 1))))
 
     def _between(self, place: int) -> Iterator[Event]:
@@ -101,7 +101,7 @@ def load_path(
 
 
 def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
-    """Compute the equilibrium from which a path along a drive starts, with the drive coordinate fixed, and the drive's value there."""
+    """Compute the equilibrium at the start of a path along a drive, with the drive coordinate fixed, and the value of the drive there."""
     driven = drive in {channel.name for channel in unloaded.model.inputs}
     if not bool(unloaded.converged):
         return unloaded, 0.0
