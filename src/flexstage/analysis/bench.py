@@ -89,7 +89,7 @@ class StageResults:
             bench._points[name, at] = each  # noqa: SLF001
 
     def one(self, place: int, share: float) -> StageResults:
-        """Results of one design of a batch. `share` times its imaginary part is added to each number. Recent results are cached."""
+        """Results of one design of a batch. Numbers become real part plus `share` times imaginary part. Recent results are cached."""
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()

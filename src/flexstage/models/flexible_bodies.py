@@ -164,8 +164,9 @@ def with_flexible_bodies(model: LinearModel, mechanism: Mechanism, flexibilities
 
     Masses, gauges, points, and links without length (coils, springs) follow the mean motion of each body.
 
-    The link strains are e = G q - s, the link stiffness is k, and the compliance of the bodies is C. E are the strains of the links per
-    unit twist of their ends. The twists of the ends are eliminated: the link forces are (k - k E X E^T k) e with X = (C^-1 + E^T k E)^-1.
+    The link strains are e = G q - s, with the coordinates q and the imposed strokes s. The link stiffness is k, the compliance of the
+    bodies is C, and E are the link strains per unit twist of the link ends. The twists of the ends are eliminated: the link forces are (k -
+    k E X E^T k) e with X = (C^-1 + E^T k E)^-1.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

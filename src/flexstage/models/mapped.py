@@ -77,8 +77,8 @@ class LeverStiffness:
 def mapped(mechanism: Mechanism) -> LinearModel:
     """Build the model of Shin & Moon: axial springs in actuator coordinates under a rigid platform.
 
-    The stiffness of each unit is specified in the description, or computed by `unit_stiffness`. Raises `DesignError` if it is neither
-    specified nor computable; the error names the key that specifies it.
+    The stiffness of each unit is specified in the description, or computed by `unit_stiffness`. Raises `DesignError` if a stiffness is
+    neither specified nor computable; the error names the key that specifies this stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> (mapped(double_triangle()).stiffness_matrix[0, 0] / 1e6).round(2).item()  # 1.5 K_a

@@ -51,8 +51,9 @@ def budget(
     `None`, drift is computed for 1 K. If expansion coefficients are missing and the change is 0 or `None`, drift is omitted, and `reasons`
     has a note.
 
-    xi are the displacements, and a = R_a xi the ideal strokes. J = dx/da is the ideal Jacobian, V are the ideal motions, T = dx/da is the
-    gain of the elastic model, and Lambda = I - R_a V^+ T its lost motion. All contributions are largest absolute values:
+    xi are the displacements, R_a the strokes per platform motion, and a = R_a xi the ideal strokes. J = dx/da is the ideal Jacobian, V are
+    the ideal motions, T = dx/da is the gain of the elastic model, and Lambda = I - R_a V^+ T its lost motion. All contributions are largest
+    absolute values:
 
     - lost motion: J diag(Lambda) R_a xi;
     - crosstalk: J (Lambda - diag(Lambda)) R_a xi, plus the motion outside the ideal motions;

@@ -100,8 +100,8 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     Lost motion is the matrix Lambda = I - R_a V^+ T, with the symbols of `LostMotion`. The budget of contributions by link is exact for any
     graph of links. By virtual work and reciprocity, the entry Lambda_ij is the sum of f_e . gamma_e over all links e. Here f_e is the force
     of link e, with strokes fixed, due to the platform wrench in row i of R_a V^+. The vector gamma_e is the deformation of link e in the
-    ideal motion of stroke j. For one unloaded lever, the diagonal of Lambda is eps / (1 + eps), with eps = K_theta2 / (r_1^2 K_1) for the
-    pivot stiffness K_theta2, the short arm r_1 and the stiffness K_1 of stack and hinges (equation 11 of Shin & Moon). Motions are small.
+    ideal motion of stroke j. For one unloaded lever, the diagonal of Lambda is eps / (1 + eps), with eps = K_theta2 / (r_1^2 K_1) (equation
+    11 of Shin & Moon). K_theta2 is the pivot stiffness, r_1 the short arm, K_1 the stiffness of stack and hinges. Motions are small.
 
     If the model is linearised about a displaced state, the ideal motion is still computed in the nominal position. The budget then requires
     the model `linearise(state, inner=False)`, and has the additional contribution `geometric` of the geometric stiffness. Raises

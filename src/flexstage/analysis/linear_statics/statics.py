@@ -149,8 +149,8 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
     """Compute the stiffness along each ideal motion and along each constraint of a stage with fewer than six ideal motions.
 
     `found` is the statics at a point of the platform. With the other degrees of freedom free, the stiffness of a degree of freedom is the
-    reciprocal of its diagonal entry in the compliance. With the others fixed, it is the diagonal entry in the stiffness. It is NaN for a
-    locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and load points differ.
+    reciprocal of its diagonal entry in the compliance. With the others fixed, it is the diagonal entry in the stiffness. The stiffness is
+    NaN for a locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and load points differ.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

@@ -59,8 +59,8 @@ class Stability:
     """Buckling load factors of a stage (...). `dead` is the load factor of weight, payloads and forces with all strokes zero.
 
     `worst` (...) is the load factor of the permanent load together with the worst `strokes` (..., m) [m]; it is infinite without softening.
-    `stiffens` (...) is the largest relative increase of the stiffness of a motion by the permanent load. `moving` names the bodies with the
-    largest motion in the buckling mode.
+    `stiffens` (...) is the largest relative increase of any stiffness due to the permanent load. `moving` names the bodies with the largest
+    motion in the buckling mode.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -114,7 +114,8 @@ def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) ->
     """Compute force-displacement lines of the platform at its reference point; `mapping` is the same as for `single_axis`.
 
     The strokes for coordinate j end where the first actuator reaches its limit. The travel is the elastic motion for these strokes; it
-    includes lost motion. The load acts only along coordinate j; the other coordinates are free, so the stiffness is 1 / C_jj.
+    includes lost motion. The load acts only along coordinate j; the other coordinates are free, so the stiffness is 1 / C_jj, with the
+    compliance C.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

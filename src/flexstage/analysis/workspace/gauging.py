@@ -174,7 +174,7 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
 
 
 def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number]) -> GaugeRange:
-    """Compute gauge readings over the corners of a box of displacements (half widths by coordinate [m, rad]), and half ranges.
+    """Compute the largest gauge readings at the corners of a box of displacements (half widths by coordinate [m, rad]), and half ranges.
 
     The platform's axis is the line along z through its reference point. `largest_here` and `largest_anywhere` are NaN for gauges that are
     not between platform and ground.

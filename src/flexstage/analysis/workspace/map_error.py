@@ -25,7 +25,7 @@ _ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 class MapError(Result):
-    """Error of the linear map: the pose by finite kinematics minus J a.
+    """Error of the linear map: the pose by finite kinematics minus J a, with the Jacobian J and the strokes a.
 
     `errors` (k, ..., 6) [m, rad] are the errors at the `strokes` (k, ..., n) [m]. `worst` (..., 6) is the largest error by axis, at
     `worst_strokes` (..., 6, n). If all errors are rounding errors, `worst` is 0 and `worst_strokes` contains the first strokes. `residual`
@@ -70,9 +70,9 @@ class MapError(Result):
 
 
 def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: StrokeLimits, *, inside: int = 64) -> MapError:
-    """Compute the error of x = J a in the box of strokes: at corners, centres of faces, and `inside` points of a Halton sequence.
+    """Compute the error of the linear map in the box of strokes: at corners, centres of faces, and `inside` points of a Halton sequence.
 
-    Redundant strokes strain the links unless they are consistent with a pose. For redundant actuators, the points are therefore the
+    Redundant strokes strain the links, unless the strokes are consistent with a pose. For redundant actuators, the points are therefore the
     vertices of the reachable polytope and points halfway to them. Raises `DesignError` for more than 12 actuators or none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -95,7 +95,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
 
 
 def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> MapError:
-    """Compute the error of x = J a at k combinations of strokes (k, ..., n) [m], with batch axes in the middle.
+    """Compute the error of the linear map at k combinations of strokes (k, ..., n) [m], with batch axes in the middle.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -31,7 +31,7 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
 
 
 def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Compute the damping ratio zeta_r (..., k) of each mode: by the law, plus phi^T D phi / (2 omega_r) for the dampers D.
+    """Compute the damping ratio zeta_r (..., k) of each mode: of the damping law, plus phi^T D phi / (2 omega_r) for the dampers D.
 
     The damper term neglects the coupling of modes by dampers, which `transfer` and `state_space` include. For modes at 0 Hz, the ratio is
     zero.
@@ -41,7 +41,7 @@ def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
 
 
 def law_rates(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Compute 2 zeta_r omega_r (..., k) [1/s] of each mode by a law.
+    """Compute 2 zeta_r omega_r (..., k) [1/s] of each mode for a damping law.
 
     For a mode at 0 Hz, the result is the mass factor of Rayleigh damping, and zero for other laws.
     """
@@ -76,7 +76,7 @@ def viscous_coupling(model: LinearModel, solved: Eigen) -> Array:
 
 
 def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Compute the damping ratio zeta_r (..., k) of each mode by a law.
+    """Compute the damping ratio zeta_r (..., k) of each mode for a damping law.
 
     - Modal: as specified.
     - Rayleigh: zeta_r = (alpha/omega_r + beta omega_r)/2 (exact), with the mass factor alpha and the stiffness factor beta.

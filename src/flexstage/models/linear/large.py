@@ -224,7 +224,7 @@ def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Arra
 def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:
     """Return whether K is certainly definite: every 6x6 link stiffness is positive definite, and links connect every body to the ground.
 
-    `joins` are the pairs of body numbers; the ground has the number `bodies`.
+    `joins` are the pairs of joined bodies, by number; the ground has the number `bodies`.
     """
     distinct = {id(law): law for law in laws}.values()
     for law in distinct:

@@ -157,7 +157,7 @@ class LinearModel(InNotebook, CheckedFields):
         return float(np.median(stiff[used] / heavy[used])) if used.any() else 1.0
 
     def follow(self, strains: Mapping[str, Array]) -> Array:
-        """Compute the motion of least strain energy if `strains` (..., r, k) are added to the strains of parts: -K^-1 sum G^T k strain."""
+        """Compute the motion (..., n, k) of least strain energy if `strains` (..., r, k) are added in parts: -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
         forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())

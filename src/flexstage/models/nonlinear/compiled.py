@@ -54,7 +54,7 @@ class _Task(ctypes.Structure):
 
 @dataclass(frozen=True, eq=False)
 class CompiledResult:
-    """Poses of b cases after the iterations, with `status`, number of iterations `count`, last step size `moved`, last residual `lack`."""
+    """Poses of b cases, with (b,) `status`, number of iterations `count`, size `moved` of the last step and last residual `lack`."""
 
     pose: Pose
     status: Array

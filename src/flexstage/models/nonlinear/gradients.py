@@ -75,10 +75,11 @@ def gradients(
 ) -> Array:
     """Compute gradients (a, ...) of results with respect to the numbers (in SI units) at the a addresses `names`, for constant loads.
 
-    By the implicit function theorem, the coordinates q of an equilibrium change with a number p by dq/dp = - K^-1 dF/dp. K is the tangent
-    stiffness, including the inner unknowns of flexures. F is the residual; its derivative is computed at the known state. Residual and
-    results are differentiated by a fourth-order central difference with four points. The error of a gradient is about 1e-8 times the ratio
-    of the result to the number. Gradients are NaN without an equilibrium. Raises `DesignError` for addresses that are not a single number.
+    By the implicit function theorem, the derivative of the equilibrium coordinates q with respect to a number p is - K^-1 dF/dp. K is the
+    tangent stiffness, including the inner unknowns of flexures. F is the residual; its derivative is computed at the known state. Residual
+    and results are differentiated by a fourth-order central difference with four points. The error of a gradient is about 1e-8 times the
+    ratio of the result to the number. Gradients are NaN without an equilibrium. Raises `DesignError` for addresses that are not a single
+    number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()

@@ -88,7 +88,7 @@ class _Coordinates:
 
 @check_arguments
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
-    """Linearise about a state: a linear model for modes, responses and losses of a displaced or loaded stage.
+    """Linearise about a state: a linear model for modes, responses and lost motion of a displaced or loaded stage.
 
     The cases of the state are the batch axes of the model.
 

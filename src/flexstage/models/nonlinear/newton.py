@@ -31,7 +31,7 @@ _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust
 class EquilibriumSolution:
     """Poses of b cases with `status`, number of `iterations`, last `residual` (see `lack`), and load fraction `reached`.
 
-    A failed case has the pose at the fraction `reached`, or its start pose if `reached` is zero.
+    A failed case has the pose at the load fraction `reached`, or its start pose if this fraction is zero.
     """
 
     pose: Pose
