@@ -47,7 +47,7 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     """Pair each platform mode, by index, with the most similar mode of another model.
 
     The modal assurance (Allemang and Brown 1982) is weighted by kinetic energy. A least-squares fit of the common motion outputs converts
-    the modes of both models to the coordinates of the smaller model. The inertia of this model gives the kinetic energy. In the fit,
+    the modes of both models to the coordinates of the smaller model. The inertia of the smaller model gives the kinetic energy. In the fit,
     rotations are multiplied by the platform's radius of gyration. The modal assurance is normalised by the total kinetic energy of each
     mode, including motion without an output.
 

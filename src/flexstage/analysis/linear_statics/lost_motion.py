@@ -84,7 +84,7 @@ class LostMotion(Result):
 
     @property
     def actuators(self) -> Annotated[Mapping[str, ActuatorLoss], VIEW]:
-        """Transmission and own (diagonal) loss of each actuator."""
+        """Transmission of each actuator, and its own loss (diagonal entry of `loss`)."""
         return {name: ActuatorLoss(self.transfer.at(name, name), self.loss.at(name, name), self.of(name)) for name in self.loss.rows}
 
     def of(self, actuator: str) -> Shares:

@@ -45,7 +45,7 @@ class Omitted:
 
 
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
-    """Compare the static response of an output to an input, the names in `channel`, with restricted and with full parts.
+    """Compare the static response of an output to an input (names in `channel`) for restricted parts and for full parts.
 
     `simple` maps parts or links (`vertical/pivot`) to their elastic and their free degrees of freedom; all others are locked. One at a
     time, each locked or freed degree of freedom is made elastic. Batches are not supported.

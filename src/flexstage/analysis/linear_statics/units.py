@@ -34,7 +34,7 @@ class UnitResult(UnitOutput):
 
     `loss` and `load_compliance` [m/N] are computed with the output guided along its direction. `series` is the unit's stiffness in actuator
     coordinates for the mapped model (`None` if this model does not support the unit). For a lever unit, `lever` has the spring stiffnesses
-    of lever theory. `omitted` has the errors of the unit's gain by equation 3 of Shin & Moon, one for each degree of freedom that the
+    of lever theory. `omitted` has the errors of the gain that equation 3 of Shin & Moon gives, one for each degree of freedom that the
     equation neglects.
     """
 

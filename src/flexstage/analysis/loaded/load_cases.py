@@ -76,8 +76,8 @@ class LoadCase(CheckedFields):
 class CaseFactor:
     """Critical load factor of a `load` at the operating point `place`, with the `kind` of critical point and the `buckling_mode`.
 
-    `factor` is infinite if the stage is stable up to the largest factor, and NaN if unknown; `why` is the reason. `bound` is the factor up
-    to which the stage is known to be stable, NaN if unknown.
+    `factor` is infinite if the stage is stable up to the largest computed factor, and NaN if unknown; `why` is the reason. `bound` is the
+    factor up to which the stage is known to be stable, NaN if unknown.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -181,7 +181,7 @@ def _own(mechanism: Mechanism) -> Iterator[str]:
 
 
 def path_cases(mechanism: Mechanism, name: str, places: Mapping[str, float] | None = None) -> Iterator[LoadCase]:
-    """Return the load cases of one path: at both ends, or at the values of its drive in `places`, by name [SI].
+    """Return the load cases of one path: at both ends, or at the drive values [SI] that `places` contains by name.
 
     >>> from flexstage.cases.registry import case
     >>> [each.place for each in path_cases(case("long-travel-xy"), "x")]

@@ -69,8 +69,8 @@ class Misalignments(Result):
 
     `followed` is the misalignment up to which the stage is known to be stable, as in `Misaligned`. `load` is the load that misaligns the
     instance by `size` [rad, m]; `stress` is the largest stress in a flexure [Pa]. `load` and `stress` are null if no equilibrium was found.
-    `worst` is the result for the instance and axis with the least `followed`; if all values are equal, it has the largest stress. `worst`
-    is None if no instance is connected to the ground.
+    `worst` is the result with the least `followed` or, if all values of `followed` are equal, with the largest stress. `worst` is None if
+    no instance is connected to the ground.
     """
 
     critical: Matrix

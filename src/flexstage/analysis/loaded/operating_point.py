@@ -159,7 +159,7 @@ class Conditions:
 
 
 def coordinate(state: State, name: str) -> Array:
-    """Return the value (...) [m, rad] of a coordinate at a state, named as in the `hold` of `equilibrium`.
+    """Return the value (...) [m, rad] of a coordinate at a state; `name` is as in the `hold` of `equilibrium`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> round(float(coordinate(equilibrium(nonlinear(parallelogram()), hold={"platform.x": 1e-4}), "platform.x")), 12)

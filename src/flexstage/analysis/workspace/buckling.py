@@ -67,7 +67,7 @@ class Buckling(Result):
 
     @property
     def min_factor(self) -> Annotated[Array, RATIO]:
-        """Load factor of the whole stage for the worst strokes; for a batch, one of each design."""
+        """Load factor of the whole stage for the worst strokes; for a batch, one factor per design."""
         return self.stage.worst
 
     @property

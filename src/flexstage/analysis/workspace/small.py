@@ -65,7 +65,7 @@ class SecondOrder:
 
 @dataclass(frozen=True, eq=False)
 class SmallMotion:
-    """Rotation `turn` [rad] and `bend` (deflection over length) of every link and the platform, for unit coordinates (L, f).
+    """Rotation `turn` [rad] and `bend` (deflection divided by length) of every link and the platform, for unit coordinates (L, f).
 
     `limit` (L) is the largest permitted rotation [rad]. At this rotation, notch faces touch if `closes` is true; otherwise, the
     second-order error reaches its limit. `span` (L) [m] is the bending length of a part, zero if the part bends at a point.
@@ -92,7 +92,7 @@ class SmallMotion:
         return float(shares[worst]), self.names[worst]
 
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
-        """Return half the square of the largest rotation or deflection over length, in a box of displacements (half widths).
+        """Return half the square of the largest rotation or bend in a box of displacements (half widths).
 
         The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. The end deflection relative to the middle is u,
         and the rotation between the ends is theta.

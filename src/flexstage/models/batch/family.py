@@ -93,7 +93,7 @@ def _family(plain: Mechanism, names: tuple[str, ...], nominal: Array) -> Family:
 
 
 def describe(family_: Family, values: Array) -> Mechanism:
-    """Return one description, with arrays, of the designs with the numbers `values` (b, P).
+    """Return a single description, with arrays, of all designs; `values` (b, P) are their numbers.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = family(double_triangle(), ("parts.neck.thickness",))

@@ -55,7 +55,7 @@ class Topology:
 
     @cached_property
     def starts(self) -> Mapping[str, int]:
-        """Offset of each kind in `SHAPES` in the array of all numbers."""
+        """First index of each kind of `SHAPES` in the array of all numbers."""
         sizes = [count * int(np.prod(SHAPES[kind])) for kind, count in self.counts.items()]
         return dict(zip(SHAPES, np.cumsum([0, *sizes[:-1]]).tolist(), strict=True))
 

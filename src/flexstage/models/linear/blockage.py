@@ -21,7 +21,7 @@ _RANK = 1e-9
 
 @dataclass(frozen=True)
 class Blockage:
-    """Cause of an immobile stroke: the locked DOFs that work against it, largest force first, and the DOFs to free.
+    """Cause of an immobile stroke: the locked DOFs that work against it, sorted by decreasing force, and the DOFs to free.
 
     `against` and `free` contain the names of DOFs (`link.freedom`). If `together` is false, it is sufficient to free any one DOF of `free`;
     otherwise, all must be freed.
@@ -38,7 +38,7 @@ class Blockage:
 def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: frozenset[str]) -> Blockage:
     """Find the locked DOFs that block a stroke: the column `stroke` of the scaled `constraints` (m, N), whose rows have `names`.
 
-    The first six columns belong to the platform. After the returned DOFs are freed, the stroke must move the platform. If possible, DOFs in
+    The first six columns belong to the platform. With the returned DOFs free, the stroke moves the platform. If possible, DOFs in
     `intended` (ideal DOFs of parts) are returned.
 
     >>> rows = np.zeros((3, 7))

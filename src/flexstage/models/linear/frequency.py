@@ -178,7 +178,7 @@ def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Dampers:
-    """Damping matrix (..., n, n) of the coordinates, and forces (..., n, m) per unit velocity of each input, transmitted by dampers."""
+    """Damping matrix (..., n, n) of the coordinates, and forces (..., n, m) that dampers transmit per unit velocity of each input."""
 
     resisted: Array
     dragged: Array

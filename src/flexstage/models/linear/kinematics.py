@@ -42,12 +42,12 @@ class Kinematics(Result):
     """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
 
     The platform twist at its reference point is x = V xi; xi are the platform coordinates named in `coordinates` (all six for f = 6).
-    `actuation` is da/dxi (..., n, f) with the strokes a, `sensing` ds/dx (..., g, 6) with the readings s, `motion` is V (..., 6, f).
+    `actuation` (..., n, f) is da/dxi for the strokes a, `sensing` (..., g, 6) is ds/dx for the readings s, and `motion` (..., 6, f) is V.
 
     `bodies` (..., N, f) is the motion of all body coordinates per unit xi. `strains` (..., 6, f) is the deformation of each link in the
-    link frame per unit xi; only free DOFs and strokes deform. `free` contains the free DOFs of each link. `length` (...) is the scale that
-    makes rotations comparable with translations. `blocked` contains the blockage of each immobile actuator. `gauge_units` are the units of
-    the readings (absent: m), `sums` the weights of the gauges in each sum of gauges.
+    link frame per unit xi; only free DOFs and strokes contribute. `free` contains the free DOFs of each link. `length` (...) is the scale
+    that makes rotations comparable with translations. `blocked` contains the blockage of each immobile actuator. `gauge_units` are the
+    units of the readings (absent: m), `sums` the weights of the gauges in each sum of gauges.
 
     `actuators` are the stroke actuators, `thrusts` the force actuators, which do not determine motion. `thrust` (..., f, t) is V^T W, the
     generalised force on xi per unit of a force actuator's input (`thrust_inputs`: N or A).
@@ -88,7 +88,7 @@ class Kinematics(Result):
 
     @property
     def immobile(self) -> tuple[str, ...]:
-        """Actuators without stroke in all ideal motions of the platform, because rigid links block them (first design of a batch)."""
+        """Actuators whose stroke is zero in every ideal motion, because rigid links block the stroke (first design of a batch)."""
         scaled = first_design(np.real(self.actuation) * self._rotations_as_lengths, 2)
         size = np.max(np.abs(scaled), axis=-1, initial=0.0)
         return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)

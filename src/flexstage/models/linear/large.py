@@ -156,7 +156,8 @@ class Solver:
     def follow(self, imposed: Array) -> Array:
         """Compute q (n, k) that minimises the energy if `imposed` strains (R, k) are added to the strains of q: K q = -G^T k `imposed`.
 
-        The strains are not converted to forces, because rounding would disturb their equilibrium. Raises `DesignError` as `solve` does.
+        The strains are not converted to forces, because rounding would disturb the equilibrium of the forces. Raises `DesignError` as
+        `solve` does.
         """
         motion, left = self._with_strains(np.zeros((len(self.scale), imposed.shape[1])), imposed)
         self._require(left)

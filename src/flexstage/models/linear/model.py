@@ -66,7 +66,7 @@ class LinearModel(InNotebook, CheckedFields):
     modes, so that frequencies and shapes do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the k
     free internal modes, `idle_inertia` (..., k, 6) their inertial forces per unit ground acceleration.
 
-    `floating` (n, k) are the mass-normalised motions without stiffness of a force-driven platform (default: none). If there are such
+    `floating` (n, k) are the mass-normalised motions of a force-driven platform that have no stiffness (default: none). If there are such
     motions, K is singular, and `solve` returns the elastic displacement without momentum in the floating motions (inertia relief).
 
     The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense

@@ -118,7 +118,7 @@ class State(InNotebook):
 
 
 def failure_reason(status: int, share: float) -> str:
-    """Return the reason why a case has no result, with the load fraction reached; empty if it has a result."""
+    """Return the reason why a case has no result, and its largest load fraction with an equilibrium; empty if it has a result."""
     if status == Status.CONVERGED:
         return ""
     if status == Status.CRITICAL:
@@ -169,9 +169,9 @@ def equilibrium(
 ) -> State:
     """Compute the equilibrium under `loads`: strokes and forces by actuator, wrenches by component (`platform.fy`).
 
-    Loads are numbers, or arrays of cases. `hold` fixes coordinates of bodies and points: `platform.y` is a displacement [m], `platform.rz`
-    a component of the rotation vector [rad]. The result includes the reactions at fixed coordinates. `weight` is the fraction of gravity,
-    `stated` the fraction of specified forces and preloads. Wrenches keep their directions in space.
+    A load is a number, or an array with one value per case. `hold` fixes coordinates of bodies and points: `platform.y` is a displacement
+    [m], `platform.rz` a component of the rotation vector [rad]. The result includes the reactions at fixed coordinates. `weight` is the
+    fraction of gravity, `stated` the fraction of specified forces and preloads. Wrenches keep their directions in space.
 
     The iteration of every case starts at the nominal position, or at `start`, under the full load. If the iteration does not converge, the
     load is increased in steps, then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
@@ -285,8 +285,8 @@ def corrected(
 ) -> State:
     """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the difference.
 
-    One Newton step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. The loads and fixed coordinates
-    must be the same as for `start`. Cases without a state in `start` remain without a state.
+    One Newton step is not sufficient, because the stiffness equals the derivative of the residual only within 1e-6. The loads and fixed
+    coordinates must be the same as for `start`. Cases without a state in `start` remain without a state.
     """
     request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))

@@ -26,9 +26,9 @@ class FlexureState:
     """State of a group of l flexures at a pose of b cases: frames and arms (l, b, ...) in space, configurations, and responses.
 
     Vectors in space: from the first body's reference point, `onset` (a_i) points to the start and `lever` (h) to the end; `arm` (a_j)
-    points from the second body's reference point to the end. `weight` (l, b, 3) is the weight per length, divided by E I / L^3 (bending
-    stiffness E I, flexure length L), in the start frames (absent without gravity). `gap` (l, b, 6) contains the gaps in translation and
-    rotation between the end and the second body.
+    points from the second body's reference point to the end. `weight` (l, b, 3) is the weight per length in the start frames, divided by E
+    I / L^3 with the bending stiffness E I and the length L of a flexure (absent without gravity). `gap` (l, b, 6) contains the gaps in
+    translation and rotation between the end and the second body.
 
     `wrench` (l, b, 6) is the wrench that the second body exerts on the flexure's end, after the flexure's own unknowns are solved.
     """
