@@ -200,13 +200,13 @@ class StageResults:
 
     @cached_property
     def stress(self) -> HingeStress:
-        """Stress of hinges over all strokes and forces; hinges are stress-free at zero voltage."""
+        """Largest hinge stresses over all strokes and forces; hinges are stress-free at zero voltage."""
         condition = "of all strokes and forces (coils at peak current)" if self.assembly.thrusts else FROM_ZERO
         return hinge_stress(self.mechanism, self.model, self._loaded, condition=condition)
 
     @cached_property
     def stress_at_strokes(self) -> HingeStress:
-        """Stress of hinges over all combinations of required strokes; hinges are stress-free at zero voltage."""
+        """Largest hinge stresses over all combinations of required strokes; hinges are stress-free at zero voltage."""
         box = self._driven_box()
         start = np.zeros(len(self.limits.actuators)) if self.limits.zero is None else -self.limits.zero
         mapping = self.per_motion

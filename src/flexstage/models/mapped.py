@@ -59,7 +59,7 @@ class LeverStiffness:
 
     @property
     def gain(self) -> Annotated[Number, RATIO]:
-        """Output per stroke, the first term of equation 11: (r_2 / r_1) / (1 + eps), with eps = `softness`."""
+        """Output per stroke, the first term of equation 11: (r_2 / r_1) / (1 + eps), with the arms r_1 and r_2 and eps = `softness`."""
         return self.long_arm / self.short_arm / (1.0 + self.softness)
 
     @property

@@ -44,7 +44,7 @@ class Drift(Result):
     `motion` has six components for the platform and for each named point. `gauges` are the readings, `forces` the six stress resultants of
     each elastic link. `ground` is the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the
     fixed point of the ground; linear temperature fields are zero there. `taken` names the material used for each body. `bodies` are the
-    twists (..., 6, 4) of all bodies at their reference points, in the four fields.
+    twists (..., 6, 4) of all bodies at their reference points, in the four temperature fields.
     """
 
     motion: Matrix

@@ -149,7 +149,7 @@ def buckling_factors(
     paths, the other operating points are both stroke ends of every actuator (for at most eight actuators), and the corner of the strokes
     that is worst by linearised buckling.
 
-    At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is held at its value. The largest
+    At an operating point, a force of constant direction displaces a coordinate, as for `--at`; a stroke is fixed at its value. The largest
     computed load factor is `most`.
 
     >>> from flexstage.cases.parallelogram import parallelogram

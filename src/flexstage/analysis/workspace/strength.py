@@ -34,8 +34,8 @@ class HingeStress(Result):
 
     `nominal` and `peak` (with the notch factor) are von Mises stresses [Pa]. `yield_stress` [Pa] is NaN if unspecified. `strokes` (..., L,
     n) [m] contains the strokes at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices,
-    restricted parts). `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN if none is specified; `None`: the
-    yield stress). `governing` names the governing limit in the first design.
+    restricted parts). `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress, NaN if none is specified. If `limit`
+    is `None`, the yield stress is the limit. `governing` names the governing limit in the first design.
 
     `places` are the ends and faces with the largest stress (empty for a batch). `condition` describes the range of strokes in words.
     `actuators` are stroke or force actuators, or platform coordinates; `units` are their units.

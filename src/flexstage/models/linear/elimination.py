@@ -85,7 +85,7 @@ def unlike(number: int, what: str) -> DesignError:
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
     """Eliminate like `eliminate`, but with separate pivots for each design of a batch. Results equal single-design results bit for bit.
 
-    `scale` is (..., N). Outside `keep`, designs may have other independent coordinates; the returned indices are the first design's.
+    `scale` is (..., N). Outside `keep`, designs may have other independent coordinates; the indices of the first design are returned.
 
     Raises `DesignError` if designs differ in the independent coordinates within `keep`, or in the number of independent coordinates.
 

@@ -54,7 +54,7 @@ class LinearModel(InNotebook, CheckedFields):
     - `output` C (..., p, n) and `feedthrough` D_u (..., p, m).
     - `rigid` (..., n, 6): motion of all coordinates when the stage moves rigidly with the ground, per unit ground twist at the platform's
       reference point; `rigid_output` (..., p, 6): outputs of the same motion.
-    - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
+    - `base_inertia` (..., n, 6): inertial force per unit ground acceleration.
     - `inertial` M_u (..., n, m): inertial forces due to the motions that inputs impose (default: zero).
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
 

@@ -66,7 +66,7 @@ def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str,
 
 
 def part_deformation(model: LinearModel, motion: Array, inputs: Array | None = None) -> dict[str, Array]:
-    """Compute the elastic deformation of every part (..., r, k): G q - imposed u, for coordinates (..., n, k) and inputs u (..., m, k).
+    """Compute the elastic deformation G q - imposed u of every part (..., r, k), for coordinates q (..., n, k) and inputs u (..., m, k).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -17,9 +17,9 @@ _STEP = 1e-30
 class FixedCoordinates:
     """h fixed coordinates: body numbers (h,), nominal arms (h, 3) of the points, `component` (h,) 0 to 5, and `value` (b, h) [m, rad].
 
-    A translation is the displacement of the point; a rotation is a component of the rotation vector v = log R. Its reaction is a moment
-    along T^-T e, with the unit vector e of the component and the matrix T for which T dv/dt is the angular velocity. `origin` (h, 3) are
-    the nominal points. If the cases belong to different designs, arms and origins are (b, h, 3).
+    A translation is the displacement of the point; a rotation is a component of the rotation vector v = log R. The reaction to a fixed
+    rotation is a moment along T^-T e. Here e is the unit vector of the component, and T dv/dt is the angular velocity. `origin` (h, 3) are
+    the nominal points. If the cases belong to different designs, arms and origins have the shape (b, h, 3).
     """
 
     body: Array

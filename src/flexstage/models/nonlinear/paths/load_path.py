@@ -112,7 +112,7 @@ def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: M
 
 
 def continue_along(begin: State, states: State, away: Array) -> State:
-    """Return the states (k,) of a drive with all stable states on one continuous path from `begin`.
+    """Return the states (k,) along a drive, such that all stable states are on one continuous path from `begin`.
 
     At values that this path does not reach, stable states are replaced by NaN.
 
