@@ -27,7 +27,7 @@ def validity(part: Part | Mechanism, where: str = "part", material: Material | N
 
     For a single part, messages use the name `where`, and Poisson's ratio is that of `material` (default: 0.3). The parts of a stage have
     their own names and materials; a specified `material` takes precedence. Returns the validity of the part (see `beams.validity`). For a
-    stage, returns the validity of each part by address: `parts.NAME`, or the link of an overridden part.
+    stage, returns the validity of each part by its address `parts.NAME`, or by link if the link overrides the part.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = validity(parallelogram())

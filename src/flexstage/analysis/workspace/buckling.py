@@ -61,7 +61,7 @@ class Buckling(Result):
 
     @property
     def factor(self) -> Annotated[Array, INNER, Heading("load factor", digits=4, infinite="in tension", mark=SAFETY)]:
-        """Critical load over compression (..., L); infinite for parts in tension."""
+        """Critical load divided by compression (..., L); infinite for parts in tension."""
         pressed = self.compression > 0.0
         return np.where(pressed, self.critical / np.where(pressed, self.compression, 1.0), np.inf)
 

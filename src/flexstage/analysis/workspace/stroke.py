@@ -106,7 +106,7 @@ class Utilisation(Result):
 
     @property
     def ratio(self) -> Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used")]:
-        """Demand over available stroke (..., n); above 1, the corner of the box is out of reach."""
+        """Demand divided by available stroke (..., n); above 1, the corner of the box is out of reach."""
         return self.demand / self.available
 
     @property

@@ -24,7 +24,7 @@ _CHUNK = 4_000_000
 
 
 class Response(Result):
-    """Frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
+    """Frequency response: complex `values` (..., f, p, m), H_ij is output i divided by input j, for e^{+j omega t}.
 
     `frequencies` (f,) are in Hz. `outputs` and `inputs` have names and units; the unit of an entry is output unit / input unit. Batch axes
     come first.

@@ -57,7 +57,7 @@ class ProportionalLoading:
     kept: list[int]
 
     def at(self, factor: float) -> tuple[Loads, FixedCoordinates]:
-        """Return loads and fixed coordinates at a factor."""
+        """Return loads and fixed coordinates at a load factor."""
         loads = Loads(*(getattr(self.loads, name) + factor * getattr(self.gain, name) for name in ("inputs", "gravity", "constant")))
         return loads, replace(self.hold, value=self.hold.value + factor * self.moved)
 
@@ -111,7 +111,7 @@ def continue_path(loading: ProportionalLoading, begin: Point, length: float, poi
     """Generate equilibria beyond `begin`, at most `length` apart in the norm of body motion.
 
     Translations are divided by the longest flexure length, rotations are in radians. The path ends after a distance of `points` times
-    `length`, or if there is no equilibrium at a small fraction of `length`.
+    `length`, or if there is no equilibrium even after a small fraction of `length`.
     """
     gone = 0.0
     for point in march(loading, begin, length, longest=length):
