@@ -58,7 +58,7 @@ class Polytope(Result):
 
 
 def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") -> Polytope:
-    """Compute the polytope of poses with low <= R_a xi <= high. `mapping` is the same as for `single_axis`.
+    """Compute the polytope of poses xi with low <= R_a xi <= high. `mapping` is R_a, as for `single_axis`.
 
     With as many strokes as coordinates, the polytope is a parallelotope. Its vertices are R_a^-1 a for all corners a of the strokes, and
     its volume is prod(full strokes) / |det R_a|.

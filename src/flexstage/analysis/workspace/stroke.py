@@ -210,7 +210,7 @@ def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Ar
 
 
 def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, provenance: str = "") -> SingleAxis:
-    """Compute the single-axis strokes x within the stroke limits low <= R_a x <= high.
+    """Compute the single-axis strokes x within the stroke limits low <= R_a x <= high, with the `mapping` R_a.
 
     `mapping` is `kinematics.mapping`, `mapping_at` of a point, or the correction gains of lost motion. Example of a single actuator:
 
@@ -229,7 +229,7 @@ def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, pr
 
 
 def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Number], *, provenance: str = "") -> Utilisation:
-    """Compute each actuator's demand, sum_j |R_ij| c_j, for a box of displacements (half widths c by coordinate [m, rad]).
+    """Compute each actuator's demand, sum_j |R_ij| c_j, for the `mapping` R and a box of displacements (half widths c [m, rad]).
 
     >>> pair = Matrix(np.array([[1.0, 0.085]]), ("B1",), ("x", "rz"), "1")
     >>> used = utilisation(pair, StrokeLimits(("B1",), np.array([-75e-6]), np.array([75e-6])), {"x": 50e-6, "rz": 244e-6})

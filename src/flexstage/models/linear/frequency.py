@@ -213,7 +213,7 @@ def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array, dampe
 
 
 def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
-    """Compute H (..., f, p, m) by modal superposition. Structural damping has equivalent modal damping ratios, unlike in `transfer`.
+    """Compute H (..., f, p, m) by modal superposition. Unlike in `transfer`, structural damping is represented by equivalent modal ratios.
 
     The result agrees with the time-domain model (`state_space`).
 
