@@ -32,7 +32,7 @@ Score = Callable[[Array], float]
 
 @dataclass(frozen=True, eq=False)
 class Residues:
-    """Modal gains (groups of modes, outputs, inputs) of the model, `theory`, and of the test, `measured`, in the same units.
+    """Modal gains of the model (`theory`) and of the test (`measured`) in the same units, by group of modes, output and input.
 
     `inputs_known` (m,) marks inputs whose units can be converted. `direct` (m,) marks inputs recorded as the actuator's own quantity or as
     a force. A recorded voltage is not direct, because the gain of the amplifier after it may be unknown.
@@ -68,7 +68,7 @@ class SuspectedFault:
 
 
 def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> SuspectedFault | None:
-    """Find the correction of `outputs` that makes the measured `shapes` (p, k) similar to those of the model; `None` without one.
+    """Find the correction of `outputs` that makes the measured `shapes` (p, k) similar to the model's shapes; `None` if there is none.
 
     A correction exchanges two outputs, inverts one or two, or divides all by the values (p,) of `scales()`. If no single correction
     suffices, pairs of corrections are tried; with a pair, the shapes must match almost completely. The first of several equally good
@@ -145,7 +145,7 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Suspec
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
-    """Estimate the scale (p,) of every output: its `measured` amplitudes (p, groups of modes) relative to `theory`, those of the model.
+    """Estimate the scale (p,) of every output: `measured` modal amplitudes (p, groups of modes) divided by the model's, `theory`.
 
     The median of the scales is 1. The amplitudes of each group of modes may have another scale, which does not affect the result.
 
@@ -266,7 +266,7 @@ def _nearest_median(ratios: Array) -> float:
 def normalise(residues: Residues) -> Residues:
     """In each group, divide the gains of model and test by the norm of the model's gains, so that all modes have equal weight.
 
-    Groups without gains in the model, apart from rounding errors, have no weight.
+    Groups whose gains in the model are only rounding errors have no weight.
 
     >>> theory, measured = np.array([[[2.0]], [[0.0]]]), np.array([[[2.2]], [[1.0]]])
     >>> normalise(Residues(("S",), ("B",), theory, measured, *np.ones((2, 1), dtype=bool))).measured.ravel().tolist()

@@ -35,7 +35,7 @@ def followed(told: ProgressCallback) -> Generator[None]:
 
 @contextmanager
 def part(start: float, stop: float, text: str = "") -> Generator[None]:
-    """Map the progress of the `with` block to the range from `start` to `stop` of the total, 0 to 1; `text` describes the block."""
+    """Report the progress of the `with` block as `start` to `stop` (0 to 1) of the total progress; `text` describes the block."""
     outer = _FOLLOWER.get()
     with followed(lambda own, share: outer(text or own, start + share * (stop - start))):
         yield

@@ -143,7 +143,7 @@ class RecordTexts:
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
 
     def requirements(self, model: LinearModel | None, highest: float | None = None) -> RecordRequirements:
-        """Return the requirements on a record: the model's outputs, the resolution, and the band, else the `highest` mode [Hz]."""
+        """Return the requirements on a record: the model's outputs, the resolution, and the band's upper end (default: `highest` [Hz])."""
         top = _hertz("--band", self.band[1]) if self.band is not None else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
         unrecorded = self.excitation not in (None, Excitation.RECORDED)
@@ -167,7 +167,7 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """Identify the modes of records and print each warning. If known, `model` and the `highest` mode [Hz] set requirements on records."""
+    """Identify the modes of records and print each warning. Records must suit the `model` and the `highest` mode [Hz], if known."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown, followed(shown.share):
         seen = identification(usable_measurement(open_records(paths, reader), reader.accept_faults, needs), search)

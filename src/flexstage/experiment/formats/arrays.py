@@ -82,9 +82,9 @@ def held_array(name: str, values: Array) -> Variable:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Contents of a file, named `where` in messages: the arrays `variables`, and `said`, which maps names to strings, lists or numbers.
+    """Contents of a file: the arrays `variables`, and `said`, which maps names to strings, lists or numbers.
 
-    `objects` maps names to classes of objects that only the program that wrote the file can read.
+    Messages call the file `where`. `objects` maps names to classes of objects that only the program that wrote the file can read.
     """
 
     where: str

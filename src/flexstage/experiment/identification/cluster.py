@@ -19,7 +19,7 @@ _STABLE_FREQUENCY, _STABLE_DAMPING, _STABLE_PARTICIPATION = 0.002, 0.05, 0.98
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """Candidate for a mode: a pole in Hz (rad/s over 2 pi) that recurs at a number of `orders`, and its participation (m,)."""
+    """Candidate for a mode: its pole in Hz (rad/s divided by 2 pi), its participation (m,), and the number of `orders` with this pole."""
 
     pole: complex
     participation: Array
@@ -49,7 +49,7 @@ class _Track:
 
 
 def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
-    """Build the diagram of poles of increasing order, and the candidates: poles found at two fifths of the orders or at more.
+    """Build the diagram of poles of increasing order, and the candidates: poles found at two fifths of the orders or more.
 
     A track is one pole followed from order to order. A pole continues the nearest track of the orders below, by distance in the complex
     plane and by participation. A track contains at most one pole of each order, so that two close modes remain two tracks. Participations

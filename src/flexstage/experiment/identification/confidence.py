@@ -22,7 +22,7 @@ SAME = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Deviations:
-    """Standard deviations of modes: `frequencies` (k,) in Hz, `damping` (k,) of the damping ratios.
+    """Standard deviations of modes: `frequencies` (k,) for frequencies in Hz, `damping` (k,) for damping ratios.
 
     `shapes` (p, k) applies to the real part and to the imaginary part of shapes with largest component 1.
     """
@@ -41,12 +41,12 @@ class Deviations:
 
 
 def misfits(band: Band, modal: Modal) -> Array:
-    """Compute the rms residual of the fit near each mode (k,), divided by the rms noise of the band; 1 if not significant.
+    """Compute the rms residual of the fit near each mode (k,), divided by the rms noise of the band; 1 if the residual is not significant.
 
     With noise only, the residual has the level of the noise everywhere, after correction for the degrees of freedom that the mode uses.
     Outputs whose noise is coherent count as one output. A residual is significant if noise causes it with a probability below 1/1000: the
     mode is then nonlinear, not viscously damped, or not isolated. Two neighbourhoods of a mode are tested: frequencies within 1.5 and
-    within 4 half-widths. A mode that varies, or has unrecorded excitation, has the largest residual in the neighbourhood of 1.5
+    within 4 half-widths. If a mode varies during the test or its excitation was not recorded, the residual is largest within 1.5
     half-widths.
 
     >>> from flexstage.experiment.example import one_mode_band
@@ -91,8 +91,8 @@ def _shared_noise(power: Array, lines: float) -> Array:
 def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:
     """Compute standard deviations of a fit by the Cramer-Rao bound: the covariance is I^-1, the inverse of the Fisher information.
 
-    `inflation` multiplies the variances. If the covariance S of the gradient, `scatter`, is given, the covariance of the parameters is I^-1
-    S I^-1, valid also for noise correlated between outputs (White 1982).
+    `inflation` multiplies the variances. If `scatter` is given, the covariance S of the gradient, the parameters have the covariance I^-1 S
+    I^-1, which is also valid for noise correlated between outputs (White 1982).
 
     The residual is analytic in its complex parameters, so real and imaginary parts each have half of the covariance. The common scale
     factor of a shape and its participation is arbitrary; fixing the largest participation eliminates it.

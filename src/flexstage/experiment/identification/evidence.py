@@ -66,14 +66,14 @@ class Evidence:
     unstated: bool = False
 
     def apart(self, frequencies: Array) -> Array:
-        """Return the spacing of lines in Hz near `frequencies` in Hz: `resolution`, or the local spacing if lines are uneven."""
+        """Return the spacing of lines in Hz near `frequencies` in Hz: `resolution`, or the local spacing if lines are unevenly spaced."""
         lines = self.responses.frequencies
         if not self.stored or is_even(lines):
             return np.full(np.shape(frequencies), self.resolution)
         return np.interp(frequencies, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines))
 
     def shape(self, cells: Cells) -> Array:
-        """Return the noise variance (p, c) of every output in each cell relative to other cells: from stored coherence, else uniform."""
+        """Return the relative noise variance (p, c) of every output in each cell: from stored coherence; without coherence, 1."""
         return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
 
     def variance(self, low: float, high: float) -> Array:

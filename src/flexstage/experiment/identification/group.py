@@ -132,7 +132,7 @@ def _hidden_mode_factor(band: Band, found: Fit) -> Array:
 
 
 def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], found: BandModes) -> BandModes:
-    """Increase the inflation factors to include the scatter of modes between parts of the record, if the residual exceeds noise.
+    """If the residual exceeds noise, increase the inflation factors so that they include differences of modes between parts of the record.
 
     `cells` belong to the same band, but are computed from transforms of the record's parts. A mode that depends on amplitude or time
     differs between parts.

@@ -16,9 +16,9 @@ _OCTAVES = 6
 def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
     """Compute standard deviations (k,) in Hz of real and imaginary parts of poles, by omitting one group of cells at a time.
 
-    `groups` (c,) are the group numbers of the cells, from 0 to G - 1. Without group g, a pole changes by d_g. The variance is sigma^2 = (G
-    - 1)/G sum |d_g|^2 / 2, with the sum over the groups. The changes d_g are Newton steps -(I - I_g)^-1 s_g: I is the Fisher information of
-    all cells, I_g and s_g are the contributions of group g to the information and to the gradient of the log-likelihood (Tukey 1958; CR3 of
+    `groups` (c,) are the group numbers of the cells, from 0 to G - 1. Without group g, a pole changes by d_g. The variance sigma^2 is (1 -
+    1/G)/2 times the sum of |d_g|^2 over the groups. The changes d_g are Newton steps -(I - I_g)^-1 s_g: I is the Fisher information of all
+    cells, I_g and s_g are the contributions of group g to the information and to the gradient of the log-likelihood (Tukey 1958; CR3 of
     Bell & McCaffrey 2002).
 
     Errors of different groups must be independent; errors within a group may be correlated. An error common to all groups is not detected.
@@ -53,8 +53,8 @@ def sub_bands(band: Band, pole: complex) -> Array:
     """Divide the cells into groups (c,) by distance from a pole, for `jackknife`.
 
     One group is within a half-width of the pole. On each side, each further octave of distance from the pole is a group. Near the
-    resonance, the residual of a wrong model varies with frequency over a half-width. Farther away, it varies over a frequency range as wide
-    as the distance from the resonance.
+    resonance, the residual of a wrong model changes within a half-width. Farther away, it changes within a frequency range as wide as the
+    distance from the resonance.
 
     >>> from flexstage.experiment.example import POLE, one_mode_band
     >>> sub_bands(one_mode_band()[0], POLE).tolist()

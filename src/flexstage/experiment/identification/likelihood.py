@@ -24,8 +24,8 @@ _DIGITS = 1e-6
 class Modal:
     """Modes of a band: H(f) is the sum over modes of shape times participation / (j f - pole), plus terms of modes outside the band.
 
-    `poles` (k,) are in Hz (rad/s over 2 pi). `participation` (k, m+b) has a column for each input and each block's transient; `shapes` is
-    (p, k).
+    `poles` (k,) are in Hz (rad/s divided by 2 pi). `participation` (k, m+b) has m columns for inputs and b for the transients of blocks;
+    `shapes` (p, k) has a row for each output.
     """
 
     poles: Array
@@ -40,12 +40,12 @@ class Modal:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Data of one band: its cells, and the noise `variance` (p, c) of every output per line in every cell.
+    """Data of one band: its cells, and the noise `variance` (p, c) per line of every output in every cell.
 
     `background` (c, b, 8) are the basis functions of modes outside the band, as Legendre coefficients in every cell. `smear` describes how
-    windows smear the lines, if known. `shape` (p, c) is the noise variance of every output in every cell relative to that in other cells,
-    if known. `rounding` (p,) is the variance per line caused by rounding of samples. The first `inputs` columns of the drive are inputs,
-    the others transients (default: all are inputs).
+    windows smear the lines, if known. `shape` (p, c) is the relative noise variance of every output in every cell, if known. `rounding`
+    (p,) is the variance per line caused by rounding of samples. The first `inputs` columns of the drive are inputs, the others transients
+    (default: all are inputs).
     """
 
     cells: Cells
@@ -163,7 +163,7 @@ def with_shapes(band: Band, poles: Array, participation: Array) -> Modal:
 
 
 def residual_power(band: Band, modal: Modal) -> Array:
-    """Compute the powers and cross powers (p, p, c) of the residuals in every cell. The first index is that of the conjugated output.
+    """Compute the powers and cross powers (p, p, c) of the residuals in every cell. The first index belongs to the conjugated output.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -181,9 +181,9 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Compute the outputs that modes and background explain, block by block, as factors (p, c, 8, n) for the products Z of `Cells`.
+    """Compute, block by block, the outputs that modes and background explain, as factors (p, c, 8, n) of the columns of Z (see `Cells`).
 
-    Yields the indices of the block's cells and the factors in these cells.
+    Yields, for each block, the indices of its cells and the factors in these cells.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> [len(chosen) for chosen, _ in explained_share(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
@@ -214,8 +214,8 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
     """Compute the lower bound of the noise variance (p, c) per line.
 
     Cells represent responses with a relative error e of 1e-6. This error is common to all N lines, so averaging does not reduce it. The
-    lower bound, N e^2 times the power of the output per line, prevents false modes and confidence intervals that are too narrow. `rounding`
-    (p,) is the variance caused by rounding of an output's samples, without other noise.
+    lower bound is N e^2 times the power of the output per line, or `rounding` (p,) if this is larger: the variance caused by rounding of
+    samples. It prevents false modes and confidence intervals that are too narrow.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells
@@ -228,7 +228,7 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
 def scatter(band: Band, modal: Modal) -> Array:
     """Estimate the covariance (q, q) of the likelihood's gradient for noise correlated between outputs.
 
-    The result is the middle matrix S of the sandwich estimator I^-1 S I^-1 (White 1982), for the parameters of `Fit.information`, I. S
+    The result is the middle matrix S of the sandwich estimator I^-1 S I^-1 (White 1982), with I and the parameters of `Fit.information`. S
     approaches the Fisher information if noise is independent between outputs. The covariance of the noise is the residual power averaged
     over only 25 lines, because the residual of an unrecorded force follows the resonances. The variance of the noise is at least `silence`.
 
@@ -254,7 +254,7 @@ def scatter(band: Band, modal: Modal) -> Array:
 
 
 def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
-    """Compute the contribution of each group of cells to the gradient (g, q) and the information (g, q, q) (see `Fit.information`).
+    """Compute the contributions of g groups of cells to the gradient (g, q) and to the information (g, q, q) for q parameters (see `Fit`).
 
     `groups` (c,) are the group numbers of the cells, from 0. For fitted modes the gradients sum to zero.
 

@@ -14,7 +14,7 @@ _SPAN = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Poles:
-    """Poles of one order: `values` (k,) in rad/s, Re < 0, Im > 0; `participation` (k, m), each row of unit length."""
+    """Poles of one order: `values` (k,) in rad/s with Re < 0 and Im > 0; the rows of `participation` (k, m) have unit length."""
 
     order: int
     values: Array
@@ -35,10 +35,10 @@ def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) ->
     """Estimate the poles of every order from responses H (f, p, m) at `frequencies` in Hz, with weights (f, p) of the outputs.
 
     The model is the right matrix fraction H = B(z) A(z)^-1: B and A are matrix polynomials with complex coefficients in z = exp(s T), with
-    the Laplace variable s and the period T. The band is mapped to half of the unit circle (Peeters, Van der Auweraer, Guillaume & Leuridan,
-    Shock Vib. 11 (2004) 395). Phases of poles are unwrapped about the band's centre. The participation of a pole z_r is the left null
-    vector w of A(z_r): near z_r, A^-1 is proportional to v w^H / (z - z_r), with the right null vector v, so that every row of H is a
-    multiple of w^H. Returns only stable poles within the band.
+    the Laplace variable s. The period T is chosen so that the band covers half of the unit circle (Peeters, Van der Auweraer, Guillaume &
+    Leuridan, Shock Vib. 11 (2004) 395). Phases of poles are unwrapped about the band's centre. The participation of a pole z_r is the left
+    null vector w of A(z_r). Near z_r, A^-1 is proportional to v w^H / (z - z_r), with the right null vector v; every row of H is therefore
+    a multiple of w^H. Returns only stable poles within the band.
 
     >>> lines = np.linspace(8.0, 12.0, 81)
     >>> one = 1.0 / (2j * np.pi * lines - (-1.0 + 2j * np.pi * 10.0))

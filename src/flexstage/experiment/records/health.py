@@ -38,7 +38,7 @@ _UNWINDOWED = (
 
 @dataclass(frozen=True)
 class RecordRequirements(CheckedFields):
-    """Record requirements: frequency `resolution` [Hz] with a number of `averages`, and frequency of the `highest` mode [Hz].
+    """Requirements on a record: frequency `resolution` [Hz] with a number of `averages`, and frequency of the `highest` mode [Hz].
 
     `inputs` and `outputs` are the channels of the stage as pairs (name, unit). With `unrecorded`, the excitation was not recorded, and the
     record must have no inputs.

@@ -170,9 +170,9 @@ def count_ends(values: Array) -> tuple[int, int]:
 def explained_share(spectra: Array) -> Array:
     """Compute the fraction of each input's power that the other inputs explain, from cross-spectra (f, m, m) of m inputs.
 
-    For input i, this fraction is the power-weighted multiple coherence, 1 minus the sum of 1/(G^-1)_ii divided by the sum of G_ii (Bendat
-    and Piersol, Random Data, 4th edition, section 7.3). The sums are over the frequencies of the cross-spectra G. Delays between inputs
-    have no influence if they are much shorter than a segment.
+    For input i, this fraction is the power-weighted multiple coherence 1 - (sum of 1/(G^-1)_ii) / (sum of G_ii) (Bendat and Piersol, Random
+    Data, 4th edition, section 7.3). The sums are over the frequencies of the cross-spectra G. Delays between inputs have no influence if
+    they are much shorter than a segment.
 
     >>> explained_share(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
     [0.64, 0.64]

@@ -121,7 +121,7 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """Name of the record in messages: its file, else its name."""
+        """Name of the record in messages: its file; without a file, its `name`."""
         return self.source or self.name or "record"
 
     @property
@@ -243,7 +243,7 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """Name of the responses in messages: their file, else their name."""
+        """Name of the responses in messages: their file; without a file, their `name`."""
         return self.source or self.name or "responses"
 
     @property
@@ -288,7 +288,7 @@ class Responses(InNotebook, CheckedFields):
 
 
 def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
-    """Return a record that reports its reading for progress bars: after each block, `tell` is called with the number of samples read.
+    """Return a record that reports the progress of reading: after each block, `tell` is called with the number of samples read so far.
 
     >>> told = []
     >>> long = report_reading(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)

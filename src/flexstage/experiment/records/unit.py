@@ -55,7 +55,7 @@ def unit_problem(unit: str) -> str | None:
 
 
 def same_dimension(unit: str, other: str) -> bool:
-    """Check whether two readable units have the same dimension.
+    """Check whether two known units have the same dimension.
 
     >>> same_dimension("um", "m"), same_dimension("um", "V")
     (True, False)

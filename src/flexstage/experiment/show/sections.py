@@ -126,7 +126,7 @@ def measured_shape_section(found: Identified, shapes: StageShapes, data: StageDa
 
 
 def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) -> tuple[Motion, ...]:
-    """Convert the measured shapes to motions of the viewer; empty if the shapes cannot be mapped to the stage."""
+    """Convert the measured shapes to motions for the viewer; empty if the shapes cannot be mapped to the stage."""
     return tuple(
         Motion(
             Group.MODE,

@@ -41,7 +41,7 @@ class Window(Enum):
 
 @dataclass(frozen=True)
 class Segments(CheckedFields):
-    """Segmentation of a record: `seconds` of a segment (the inverse is the resolution in Hz), fraction of `overlap`, and `window`."""
+    """Segmentation of a record: length `seconds` of a segment (its inverse is the resolution in Hz), fractional `overlap`, and `window`."""
 
     seconds: Annotated[float, INNER]
     overlap: float = 0.5

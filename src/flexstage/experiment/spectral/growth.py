@@ -18,8 +18,8 @@ def noise_growth(frequencies: Array, responses: Array) -> Array:
     The noise variance of an output is modelled as a (1 + g |H|^2) with a constant a. Amplitude steps of a shaker, ranges of an analyser and
     files with few digits cause errors proportional to the response. To estimate the variance at a frequency line, a rational function is
     fitted to nine lines. The function has a numerator of order two, and a denominator of order one, common to all responses (McKelvey &
-    Guerin 2012). The residual of the fit has six complex degrees of freedom. The factor g is the maximum-likelihood value for the variances
-    at all lines. The method needs no modal model; therefore a mode that is missing in a model is not mistaken for noise.
+    Guerin 2012). The residual of the fit has six complex degrees of freedom. The factor g is the maximum-likelihood estimate from the
+    variances at all lines. The method needs no modal model; therefore a mode that is missing in a model is not mistaken for noise.
 
     >>> lines, draw = np.linspace(9.0, 11.0, 400), np.random.default_rng(0).standard_normal((2, 400, 1, 1))
     >>> one, noise = 1.0 / (1j * (lines - 10.0) + 0.1)[:, None, None], 0.003 * (draw[0] + 1j * draw[1])

@@ -40,9 +40,9 @@ class Lines:
 class Cells:
     """Sums over frequency cells from `low` to `high` (c,) in Hz, with the block number (c,) and the `count` of lines (c,) of each cell.
 
-    The columns of Z are the products P_a(x) U_i of a Legendre polynomial P_a, a = 0..7, and a drive U_i of the block; x is from -1 to 1 in
-    the cell. Y are the outputs. The sums are `own` (c, 8, n, 8, n) = Z^H Z, `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y.
-    The `width` columns include the drives of all blocks; `columns[block]` are the columns of one block.
+    The columns of Z are the products P_a(x) U_i of a Legendre polynomial P_a, a = 0..7, and a drive U_i of the block; x increases from -1
+    to 1 in the cell. Y are the outputs. The sums are `own` (c, 8, n, 8, n) = Z^H Z, `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) =
+    Y^H Y. `width` is the number of drives of all blocks; `columns[block]` are the indices of the drives of one block.
     """
 
     low: Array

@@ -51,7 +51,7 @@ def h2(spectra: Spectra) -> Responses:
 
 
 def spectral_ratio(spectra: Spectra) -> Responses:
-    """Compute the spectral ratio T_ij = G_ij / G_ii of Shin & Moon (equation 29), arranged as output over input.
+    """Compute the spectral ratio T_ij = G_ij / G_ii of Shin & Moon (equation 29), with outputs j as rows and inputs i as columns.
 
     G_ij is the cross spectrum of input i and output j, G_ii the power spectrum of input i. The ratio equals H1 for a single input or
     uncorrelated inputs. For correlated inputs, the ratio is not a transfer function.
@@ -89,7 +89,7 @@ def multiple_coherence(spectra: Spectra) -> Array:
 
 
 def noise_density(spectra: Spectra) -> Array:
-    """Estimate the part (f, p) of the output power density that inputs do not explain, without the bias of a finite number of averages.
+    """Estimate the part (f, p) of the output power density that inputs do not explain, corrected for the bias of finite averages.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)
@@ -102,7 +102,7 @@ def noise_density(spectra: Spectra) -> Array:
 
 
 def dependent_inputs(spectra: Spectra) -> list[Finding]:
-    """Check whether inputs are linearly dependent: then the smallest eigenvalue of their coherence matrix is zero.
+    """Check whether inputs are linearly dependent, that is, whether the smallest eigenvalue of their coherence matrix is zero.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> dependent_inputs(example_spectra())

@@ -91,7 +91,7 @@ def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
 def follow_modes(before: Design, mechanism: Mechanism) -> Design:
     """Compute the modes of a changed `mechanism`. Each row gets the modes that are most similar to its modes in the design `before`.
 
-    Similarity is measured with the mass matrix M of the previous design; all rows are assigned together. Modes whose frequencies cross
+    Similarity is measured with the mass matrix of the previous design; all rows are assigned together. Modes whose frequencies cross
     therefore keep their rows.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -140,7 +140,7 @@ class UpdatedNumber:
 
 @dataclass(frozen=True)
 class Combination:
-    """Linear combination of updated parameters, in prior standard deviations; 1/(1 + singular_value^2) of its prior variance remains."""
+    """Linear combination of parameters (in prior standard deviations); the update multiplies its variance by 1/(1 + singular_value^2)."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Identifiable combinations",
@@ -237,7 +237,7 @@ class Updated(InNotebook):
 
     @property
     def identifiability(self) -> tuple[Identifiability, ...]:
-        """Identifiability of each parameter; withheld if chi-squared exceeds ten times the number of data, unless not identifiable."""
+        """Identifiability of each parameter; withheld for identifiable ones if chi-squared exceeds ten times the number of data."""
         grades = Identifiability
         known = (
             grades.WELL if share <= _IDENTIFIED else grades.WEAKLY if share <= _HARDLY else grades.NOT for share in self.remaining_variance
@@ -286,9 +286,9 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     """Update the parameters at the addresses `names` so that the lumped model agrees best with a test; `known` are their priors.
 
     The method is Bayesian least squares in the logarithms x = ln(p/p0) of the parameters p relative to their initial values p0 (Tarantola
-    2005, ch. 3; Friswell & Mottershead 1995, ch. 8). Gauss-Newton steps, with exact derivatives by complex step, minimise sum ((d -
-    g(x))/sigma)^2 over the data d plus sum (x/sigma_p)^2 over the parameters. g(x) are the model's values, sigma and sigma_p the standard
-    deviations of data and priors. The posterior covariance is (J^T W J + S^-1)^-1 with the derivatives J of g, the weights W =
+    2005, ch. 3; Friswell & Mottershead 1995, ch. 8). Gauss-Newton steps, with exact derivatives by complex step, minimise the sum of ((d -
+    g(x))/sigma)^2 over all data d plus the sum of (x/sigma_p)^2 over all parameters. Here g(x) are the model's values, sigma and sigma_p
+    the standard deviations of data and priors. The posterior covariance is (J^T W J + S^-1)^-1 with the derivatives J of g, the weights W =
     diag(1/sigma^2) and the prior covariance S = diag(sigma_p^2).
 
     The data d are the logarithms of the modes' frequencies, paired as in `compare`; for repeated modes, the square root of their mean

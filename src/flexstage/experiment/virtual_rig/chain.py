@@ -37,7 +37,7 @@ class Chain:
     """Transfer functions from white noise of unit variance to the signals of the measuring chain, at the lines of a Fourier transform.
 
     The transform covers three blocks of `size` samples; the sampling rate is multiplied by `finer`. `strokes` (l, m) are transfer functions
-    to the inputs after the amplifiers. `inputs` (l, m) lead to the recorded inputs [m, A or N], `outputs` (l, p, m) to the gauge readings
+    to the inputs after the amplifiers, `inputs` (l, m) to the recorded inputs [m, A or N], and `outputs` (l, p, m) to the gauge readings
     [m, rad]. `strokes`, `inputs` and `outputs` use the first l spectral lines, up to the end of the drive's band. `gauge` (f, p) are
     transfer functions to the noise of the gauges, at all f lines. `note` describes the damping model.
     """

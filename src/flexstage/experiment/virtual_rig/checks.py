@@ -81,7 +81,7 @@ def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup)
 
 
 def plan_findings(plan: Plan) -> Iterator[Finding]:
-    """Find missing stack data for the plan, and errors of its default sampling.
+    """Find actuators whose data do not suffice for the plan, and a wrong number of samples.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

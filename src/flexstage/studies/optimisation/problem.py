@@ -17,7 +17,7 @@ class ObjectiveDirection(Enum):
 
     @property
     def sense(self) -> Sense:
-        """Sense of a limit on the objective that better designs meet: `at least` if it is maximised, `at most` if it is minimised."""
+        """Sense of a limit on the objective: `at least` if the objective is maximised, `at most` if it is minimised."""
         return Sense.AT_LEAST if self is ObjectiveDirection.MAXIMISE else Sense.AT_MOST
 
 
@@ -44,7 +44,7 @@ class OptimisationProblem:
 
 
 def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
-    """List all limits: those of the study, and the design's requirements, except where the study limits the same measure on the same side.
+    """List all limits: those of the study, and the design's requirements on measures without a study limit of the same sense.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]

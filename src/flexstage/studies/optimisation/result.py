@@ -63,7 +63,7 @@ class Accepted:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """One start: its first and last design (0 to 1 in each range), its final objective `value` [SI] and largest relative `violation`.
+    """Search from one start: first and last design (0 to 1 in each range), final objective `value` [SI] and largest relative `violation`.
 
     `history` (k, 2) contains the objective and the largest violation of each accepted design. `agrees`: the final design is feasible, and
     its objective differs from the best one by at most 0.01 %.
@@ -130,7 +130,7 @@ class DesignPoint:
 
 @dataclass(frozen=True)
 class RoundedPoint(DesignPoint):
-    """The best design with variables at multiples of their steps: `loss` of the objective by rounding [SI], number of tried neighbours."""
+    """The best design with rounded variables; `loss` [SI] is the objective's loss by rounding, `tried` the number of tried neighbours."""
 
     loss: float
     tried: int

@@ -33,7 +33,7 @@ def design_path(study: Study, folder: Path) -> Path | None:
 
 
 def design_text(study: Study, folder: Path) -> str:
-    """Return the text of a study's design file, or the text of its shipped case as a new file.
+    """Return the text of a study's design file; for a shipped case, the text of a new design file.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> design_text(leaf_study()[0], Path()).splitlines()[0]

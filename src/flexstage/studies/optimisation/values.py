@@ -67,7 +67,7 @@ class NumberedFrequency:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A design and its measures in the requested sequence. `shares` (n,) are the fractions of the variables' ranges, 0 to 1."""
+    """A design and its measures in the requested sequence. `shares` (n,) are the variables as fractions of their ranges, 0 to 1."""
 
     shares: Array
     found: tuple[Scalars | NumberedFrequency, ...]
@@ -87,9 +87,9 @@ class Point:
 class Values:
     """Evaluator of the `measures` of a study's designs.
 
-    Derivatives are exact: by a complex step through the formulas of the models, analytical for eigenvalues. Exceptions are `map_error` and
-    `opening`, whose corners and outlines are computed in real numbers only. The derivatives of `map_error` and `opening` are central
-    differences. Their step is a thousandth of the range, for which the effects of rounding and curvature are similar.
+    Derivatives are exact: analytical for eigenvalues, otherwise by a complex step through the formulas of the models. Only the derivatives
+    of `map_error` and `opening` are central differences, because corners and outlines are computed in real numbers. The step is a
+    thousandth of the range, for which the errors due to rounding and to curvature are similar.
     """
 
     study: Study
@@ -120,7 +120,7 @@ class Values:
         return self._evaluate(shares, slopes=True)
 
     def evaluate(self, shares: Array) -> list[Point | str]:
-        """Compute measures without derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
+        """Compute measures without derivatives for designs at fractions (s, n) of the ranges; for a failed design, return the reason."""
         return self._evaluate(shares, slopes=False)
 
     def _evaluate(self, shares: Array, *, slopes: bool) -> list[Point | str]:

@@ -64,7 +64,7 @@ class Study:
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
-        """List each column of the results by its location in the file and its name: variables, responses, and measures for limits.
+        """List the location in the file and the name of each column of the results: variables, responses, and measures for limits.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().names
@@ -99,7 +99,7 @@ class Study:
         }
 
     def sample(self, start: int, stop: int) -> Array:
-        """Compute values (n, d) of the variables in SI for the designs from `start` to before `stop` of the plan.
+        """Compute values (n, d) of the variables in SI for the plan's designs `start` to `stop` (excluded).
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().sample(1, 3).shape

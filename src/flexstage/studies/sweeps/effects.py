@@ -35,12 +35,12 @@ class Effects(InNotebook):
     Of `computed` designs, `used` have values. `mean`, `deviation`, `low` and `high` (r,) are the mean, standard deviation, minimum and
     maximum of each response in SI. `means` (d, b, r) contains, for each variable, the mean response in each of b bins of its values;
     `places` (d, b) are the mean values of the variable in these bins. The bins have equal counts; for grids, each level is a bin. The
-    effects of the other variables are subtracted from `means`. `first` (d, r) is the fraction of the variance due to a variable alone:
-    Sobol's index for Saltelli's plan, otherwise the correlation ratio of the bins, for random designs corrected for the number of bins.
-    `total` (d, r) includes all interactions of a variable; it is None for plans other than Saltelli's. `pairs` (d, d, r) is the fraction
-    due to two variables together, in addition to the fractions due to each alone; `strongest` are the strongest interactions. `errors` (2,
-    r) contains the largest standard error of first-order and total indices, and of second-order indices; it is NaN for plans other than
-    Saltelli's. All fractions are NaN for a constant response.
+    effects of the other variables are subtracted from `means`. `first` (d, r) is the fraction of the variance due to a variable alone. For
+    Saltelli's plan, it is Sobol's index; for other plans, the correlation ratio of the bins. For random designs, this ratio is corrected
+    for the number of bins. `total` (d, r) includes all interactions of a variable; it is None for plans other than Saltelli's. `pairs` (d,
+    d, r) is the fraction due to two variables together, in addition to the fractions due to each alone; `strongest` are the strongest
+    interactions. `errors` (2, r) contains the largest standard error of first-order and total indices, and of second-order indices; it is
+    NaN for plans other than Saltelli's. All fractions are NaN for a constant response.
     """
 
     variables: tuple[str, ...]
@@ -66,8 +66,8 @@ def effects(results: Results, plan: Plan) -> Effects:
     """Compute effects of a study's variables on its responses, from all designs computed so far that have values.
 
     For a response y and a variable x_i, the first-order index is S_i = V[E(y | x_i)] / V(y), and the total index is T_i = E[V(y | x_~i)] /
-    V(y) with the expected value E, the variance V, and all other variables x_~i (Sobol, Math. Comput. Simul. 55 (2001) 271; estimators of
-    Saltelli et al. 2010). With too few designs, the effects are NaN.
+    V(y). E is the expected value, V the variance, and x_~i are all variables but x_i (Sobol, Math. Comput. Simul. 55 (2001) 271; estimators
+    of Saltelli et al. 2010). With too few designs, the effects are NaN.
 
     >>> plan = Plan(Sampling.GRID, 2, levels=(3, 3))
     >>> from flexstage.studies.sweeps.plan import shares

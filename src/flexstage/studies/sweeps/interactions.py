@@ -19,7 +19,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Interaction:
-    """Interaction of two variables: means of a response as a function of the first, for low, middle and high values of the second.
+    """Interaction of two variables: the mean response as a function of the first one, for low, middle and high values of the second one.
 
     `over`, `by` and `response` are the indices of both variables and of the response. `share` is the fraction of the response's variance
     that only both variables together explain. `places` (b,) are mean values of the first variable in b bins, `levels` (3,) those of the
@@ -37,14 +37,14 @@ class Interaction:
 
 
 def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
-    """Compute fractions (d, d, r) of the variance of responses (n, r) that two variables `at` (n, d) explain only together.
+    """Compute the fractions (d, d, r) of the variance of responses (n, r) that each two variables of `at` (n, d) explain only together.
 
     The method is analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and
     subtracted. The cells formed by the bins of two variables i and j then explain a sum of squares SS_ij of the residual. The fraction is
-    SS_ij divided by the total sum of squares. Without a `grid`, the expected value of SS_ij without interaction is first subtracted: (b_i -
-    1)(b_j - 1) MSE, with the numbers of bins b_i and b_j and the mean square MSE of the rest of the residual. For a complete grid, the
-    fraction is exact. Without a grid, effects within bins are missing, and true fractions are larger. The result is NaN on the diagonal,
-    for too few designs, and for a constant response.
+    SS_ij divided by the total sum of squares. Without a `grid`, the value of SS_ij expected without interaction is first subtracted. It is
+    (b_i - 1)(b_j - 1) MSE, with the numbers of bins b_i and b_j and the mean square MSE of the rest of the residual. For a complete grid,
+    the fraction is exact. Without a grid, effects within bins are missing, and true fractions are larger. The result is NaN on the
+    diagonal, for too few designs, and for a constant response.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))

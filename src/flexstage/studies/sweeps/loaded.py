@@ -34,7 +34,7 @@ def needs_load_check(study: Study) -> bool:
 
 
 def unstable_designs(study: Study, values: Array) -> dict[int, str]:
-    """Find the designs with `values` (n, d) of the variables that are unstable under permanent load. Returns the reasons by row.
+    """Find which designs, with `values` (n, d) of the variables, are unstable under permanent load. Returns the reasons by row number.
 
     Designs without an elastic model are omitted.
 

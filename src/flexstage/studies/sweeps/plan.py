@@ -61,7 +61,7 @@ class Plan:
 
 
 def shares(plan: Plan, start: int, stop: int) -> Array:
-    """Compute fractions (stop - start, d) of the ranges, 0 to 1, for designs from `start` to before `stop`.
+    """Compute fractions (stop - start, d) of the ranges, 0 to 1, for designs `start` to `stop` (excluded).
 
     >>> shares(Plan(Sampling.GRID, 2, levels=(3, 2)), 0, 6).tolist()
     [[0.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 1.0], [1.0, 0.0], [1.0, 1.0]]

@@ -69,7 +69,7 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
 
 
 def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
-    """Read the parameters in a variable's table at `where`: their full names, and their quantity. Raises `DesignError` with all errors.
+    """Return the full names and the quantity of the parameters in a variable's table at `where`. Raises `DesignError` with all errors.
 
     >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck_radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name

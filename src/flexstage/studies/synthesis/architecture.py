@@ -126,7 +126,7 @@ class CatalogueActuator:
 
     @property
     def stiffness(self) -> float:
-        """Stiffness along the stroke [N/m]; for an amplified actuator, u'ku with its stiffness k and free deformation u per unit stroke."""
+        """Stiffness along the stroke [N/m]; for an amplified actuator, u'ku with its 6x6 stiffness k and free deformation u per stroke."""
         if self.kind == "piezo":
             return float(self.part.stiffness)
         return float(self.part.free_deformation @ self.part.between @ self.part.free_deformation)

@@ -86,9 +86,9 @@ class ForceSource:
 def force_frequency_bound(source: ForceSource, displacement: float, mass: float) -> float:
     """Return the highest natural frequency [Hz] of a motion of +-X that is driven by continuous forces through the best levers.
 
-    For n actuators of force F, moving mass m and travel T, the ratio of actuator motion to stage motion is g <= T/(2X). With the mass M of
-    the payload and the total stiffness K, K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K. The bound includes springs of negative stiffness.
-    The best lever ratio is sqrt(M/(n m)), but at most T/(2X). g = 1 is direct drive.
+    For n actuators of force F, moving mass m and travel T, the ratio of actuator motion to stage motion is g <= T/(2X). For the payload's
+    mass M and the total stiffness K, the forces require K X <= n F g, and the frequency f requires (2 pi f)^2 (M + n m g^2) <= K. The bound
+    includes springs of negative stiffness. The best lever ratio is sqrt(M/(n m)), but at most T/(2X). g = 1 is direct drive.
 
     >>> coil = ForceSource(force=73.9, mass=0.18, travel=26e-3)
     >>> round(force_frequency_bound(coil, 0.5e-3, 1.0), 1)

@@ -48,10 +48,10 @@ def displaced_values(stage: Mechanism) -> Estimate:
     With more than three required displacements, only displacements along single axes are computed.
 
     Frequencies and stiffnesses are multiplied by the ratio of their value in a model linearised at a corner to their value in a model
-    linearised at rest. Stresses include stretch. The stroke by the lumped model is multiplied by the smallest ratio of the inputs of the
-    linear model to the inputs of the nonlinear model at the corners. This stroke suffices exactly if the actuators reach the corners.
-    Quantities that do not depend on the displacement are left out. Raises `DesignError` if a corner has no equilibrium, or if outlines
-    overlap there.
+    linearised at rest. Stresses include stretch. The lumped model's stroke is multiplied by the smallest ratio, over the corners, of the
+    inputs of the linear model to the inputs of the nonlinear model. The resulting stroke suffices if and only if the actuators reach the
+    corners. Quantities that do not depend on the displacement are left out. Raises `DesignError` if a corner has no equilibrium, or if
+    outlines overlap there.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> {key: round(value) for key, value in displaced_values(parallelogram()).values.items() if key.startswith("frequency")}
@@ -122,9 +122,9 @@ def _at_corners(bench: StageResults) -> _Corners:
 def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Mapping[str, float], ...]) -> dict[str, str]:
     """Return limits for the lumped model so that better models also meet the requirements; empty if these models already do.
 
-    By space mapping, each limit is divided by the ratio of the value of a better model to the value of the lumped model (for several better
-    models, by the product of these ratios), if the result is stricter. Raises `DesignError` if the lumped value of a missed requirement is
-    zero.
+    By space mapping, each limit is divided by the ratio of a better model's value to the lumped model's value, if the result is stricter.
+    With several better models, it is divided by the product of these ratios. Raises `DesignError` if the lumped value of a missed
+    requirement is zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drawn = required_values(parallelogram())

@@ -91,7 +91,7 @@ class Block:
 
     @property
     def scale(self) -> Array:
-        """Sizes (6,) of twists with equal displacements: translations of 1 m, rotations of 1 m divided by the block's mean half size."""
+        """Sizes (6,) of twists with similar displacements: translations of 1 m; rotations of 1 m divided by the block's mean half size."""
         return np.repeat([1.0, 1.0 / float(np.mean(self.half))], 3)
 
 
@@ -157,8 +157,8 @@ def _image(element: Element, symmetry: Array) -> Element:
 def find_guide(block: Block, motions: frozenset[str], symmetries: Sequence[Array], rows: Sequence[int]) -> Guide | None:
     """Choose the guide with the largest ratio of stiffnesses, without actuators. Returns `None` if no candidate permits the motions.
 
-    Orbits (an element with its images under the symmetries) that resist a required motion by more than a small fraction of their stiffness
-    are excluded.
+    An orbit is an element with its images under the symmetries. Orbits are excluded if their stiffness along a required motion exceeds a
+    small fraction of the sum of their stiffnesses along all axes.
     """
     scaled, wanted = np.outer(block.scale, block.scale), twists_of(motions)
     stiffness = dict[tuple[Element, ...], Array]()

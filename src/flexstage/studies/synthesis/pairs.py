@@ -15,7 +15,7 @@ from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specificat
 
 @dataclass(frozen=True)
 class Shortfall:
-    """A bound that excludes a pair: the requirement, its best possible and its required value [SI], and the reason.
+    """A bound that excludes a pair: the requirement, the best possible value and the required value [SI], and the reason.
 
     `universal`: the bound holds for every mechanism with these actuators; otherwise, it holds for this architecture only.
     """
@@ -48,7 +48,7 @@ class CandidatePair:
 
 @dataclass(frozen=True)
 class ImpossiblePair:
-    """A pair that bounds exclude. Its `shortfall` has the smallest ratio, of the universal bounds if there are any, else of all bounds."""
+    """A pair that bounds exclude. Its `shortfall` is the one with the smallest ratio; universal bounds take precedence."""
 
     architecture: str
     actuator: str
@@ -64,7 +64,7 @@ def _energy(pair: CandidatePair) -> float | None:
 
 
 def energy_groups(spec: Specification, pair: CandidatePair) -> list[tuple[float, dict[str, float]]]:
-    """Return energies of actuators [J], each with the displacements reached at once: one energy for each axis, or one for all axes."""
+    """Return energies [J] of actuators with the displacements that they reach at once: one energy for each axis, or one for all axes."""
     energy, moved = _energy(pair) or math.inf, spec.displacements
     if pair.architecture.own:
         return [(energy / len(moved), {axis: value}) for axis, value in moved.items()]

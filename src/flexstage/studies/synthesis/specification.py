@@ -89,7 +89,7 @@ class BoxTable:
 
 @dataclass(frozen=True)
 class MakeTable:
-    """Materials of flexures and of bodies, by names of the catalogue; thinnest flexure, step and tolerance (+-) of dimensions."""
+    """Materials of flexures and of bodies, by their catalogue names; smallest flexure thickness, step and tolerance (+-) of dimensions."""
 
     flexures: str = "7075-T6"
     bodies: str = "7075-T6"
@@ -163,7 +163,7 @@ class Specification:
 
     @property
     def masses(self) -> dict[str, float]:
-        """Smallest mass or moment of inertia of the payload along each required motion, for any accompanying other motions.
+        """Smallest effective mass or moment of inertia of the payload along each required motion, whatever other motions occur with it.
 
         For a rotation, it is 1 / (J^-1)_ii with the inertia J about the centre of mass, because (w_i)^2 <= (J^-1)_ii w^T J w for any
         angular velocity w.

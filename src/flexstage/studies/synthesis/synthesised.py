@@ -142,7 +142,7 @@ _STRUT_ENDS = 0.03
 
 
 def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list[Architecture]:
-    """Return the architectures with the motions of a specification. If no shipped one has these motions, synthesise a guide.
+    """Return the architectures with the motions of a specification. If no shipped architecture has them, synthesise a guide.
 
     Raises `DesignError` if no architecture is found, with the reason if no parallel guide exists.
 
@@ -210,7 +210,7 @@ class Layer:
 
     @property
     def elements(self) -> list[tuple[str, str]]:
-        """Parts of the guide's elements, each with the axis of their length."""
+        """Parts of the guide's elements, each with the axis along which the elements extend."""
         return sorted({(_part(each), "xyz"[each.place.face]) for each in self.guide.elements})
 
     def named(self, text: str) -> str:

@@ -123,10 +123,10 @@ def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
     """Compute the motion per command (...) of a stage with scatter, or of a batch, in the sequence of `pose_measures`.
 
     In open loop (`open`), the stacks have the voltages of the nominal stage. The motion for a unit command e_j is x = X T (stroke / nominal
-    stroke) C e_j. C are the nominal strokes per command, corrected for lost motion (`Command.gains`), the ratio is that of full strokes, T
-    are the motions per stroke of the elastic stage with scatter, and X transfers the motion to the nominal point. In closed loop (`held`),
-    a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j, where R_s,real are the
-    readings per motion of the stage with scatter. For the nominal stage, open and closed loop give the identity matrix, plus parasitic
+    stroke) C e_j. C are the nominal strokes per command, corrected for lost motion (`Command.gains`). The strokes in the ratio are full
+    strokes. T are the motions per stroke of the elastic stage with scatter; X transfers the motion to the nominal point. In closed loop
+    (`held`), a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j, where
+    R_s,real are the readings per motion of the stage with scatter. For the nominal stage, x is e_j in both cases, except for parasitic
     motions in open loop with fewer than six motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -132,7 +132,7 @@ class Tolerance(Study):
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers in which samples differ, or `None` for few samples, which are faster without a plan."""
+        """The numbers in which samples differ; `None` if samples are so few that their analysis is faster without a plan."""
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:

@@ -44,7 +44,7 @@ class ScatteredNumbers:
 
 
 def reach(design: Mechanism, source: str) -> ScatteredNumbers:
-    """Expand an address or a kind into the addresses of numbers in single instances, and vectors into their components.
+    """Expand an address or a kind into the addresses of numbers in single instances, with an address for each component of a vector.
 
     A source with a kind has the form kind.number: `hinges.thickness`, `units.rotation.z`, `gauges.shift`, `stacks.stroke` or
     `materials.young`. Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`. The name of a unit or of a pattern means all its

@@ -43,7 +43,7 @@ class Scatter:
         return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
-        """Return the entry's variables, one for each member. Names of several variables end with their address or vector component."""
+        """Return the entry's variables, one for each member. With several, each name ends with the address or the vector component."""
         low, high = -self._reach, self._reach
         several = len(self.members) > 1
         names = [f"{self.name}.{self._label(member)}" if several else self.name for member in self.members]
@@ -98,7 +98,7 @@ class Deviation(Variable):
 
 @dataclass(frozen=True)
 class Target:
-    """A number with scatter: its `address`, its `nominal` value, and the `factors` that multiply the variables added to this value."""
+    """A number with scatter at `address`: the `nominal` value, plus the sum of variables multiplied by factors (pairs in `factors`)."""
 
     address: str
     nominal: float

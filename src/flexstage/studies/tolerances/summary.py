@@ -33,10 +33,11 @@ class Spread:
     """Distributions of r responses over the samples with values. `nominal` contains the values of the nominal design.
 
     `percentiles` (5, r) are the percentiles 1, 5, 50, 95 and 99. `linear` (r,) is the standard deviation by first-order propagation,
-    sqrt(sum (dy/dx s)^2), with the sum over all variables x with the standard deviation s. `trusted` (r,): the response is smooth, and the
-    standard deviation of the sample agrees with `linear` within 10 % or four standard errors. `by_slope` (m, r) are the fractions of the
-    variance due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the variances of samples with scatter of a single
-    entry, divided by the sum of these variances over all entries. `by_slope` and `by_sample` are NaN for a constant response.
+    sqrt(sum (dy/dx s)^2), with the sum over all variables x with the standard deviation s. `trusted` (r,) is true if the response is
+    smooth, and the standard deviation of the sample agrees with `linear` within 10 % or four standard errors. `by_slope` (m, r) are the
+    fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the variances of samples with
+    scatter of a single entry, divided by the sum of these variances over all entries. `by_slope` and `by_sample` are NaN for a constant
+    response.
     """
 
     names: tuple[str, ...]
@@ -133,9 +134,9 @@ class Yields:
 class Crosstalk:
     """Statistics of the pose error per unit of command (6, f) over the samples: rows are motions, columns are commands.
 
-    The commanded motion is subtracted from the pose. `kind` is `open` (strokes commanded by the nominal mapping R_a) or `held` (pose
-    regulated as measured with the nominal mapping R_s^-1). `nominal` and `mean` are signed. `deviation` is the standard deviation, `usual`
-    the 95th percentile of the absolute errors, and `worst` their maximum, all in SI.
+    The commanded motion is subtracted from the pose. `kind` is `open` (the nominal mapping R_a commands the strokes) or `held` (a
+    controller regulates the pose that the nominal mapping R_s^-1 measures). `nominal` and `mean` are signed. `deviation` is the standard
+    deviation, `usual` the 95th percentile of the absolute errors, and `worst` their maximum, all in SI.
     """
 
     kind: str

@@ -18,7 +18,7 @@ _LISTED = 60
 
 
 def index_table(path: Path, layout: Layout) -> TableSamples:
-    r"""Index the lines of a table for reading of all columns; blank lines at the end are omitted.
+    r"""Index the lines of a table, so that samples of all columns can be read; blank lines at the end are omitted.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -41,7 +41,7 @@ HEAD_LINES = 11
 
 @dataclass(frozen=True)
 class Axis:
-    """Quantity of an axis: the number of its specific data type, its label and its unit."""
+    """Quantity of an axis: its code (the "specific data type" of UFF), its label and its unit."""
 
     kind: int
     label: str
@@ -181,7 +181,7 @@ def place_name(place: tuple[str, int, int]) -> str:
 
 
 def head(function: Function, size: int) -> bytes:
-    """Format the bytes of a binary data set that precede its values, which have `size` bytes in total.
+    """Format the header bytes of a binary data set whose values have `size` bytes in total.
 
     >>> axes = Axis(17, "time", "s"), Axis(8, "", "um"), Axis(0, "", "")
     >>> plain = Function(("S1", "", "", "", ""), 1, ("S1", 1, 0), ("", 0, 0), 4, 2, True, 0.0, 0.5, 0.0, *axes)

@@ -15,7 +15,7 @@ from flexstage.experiment.records.record import ComputedSamples, Samples
 
 @dataclass(frozen=True)
 class Layout:
-    """Layout of a function's numbers: columns per value (abscissa, real, imaginary), bytes and printed width of each."""
+    """Layout of a function's values: number of columns (abscissa, real, imaginary), and bytes and printed width of each column."""
 
     columns: int
     bytes: tuple[int, ...]
@@ -28,7 +28,7 @@ class Layout:
 
     @staticmethod
     def of(function: Function, *, short_axis: bool = False) -> Layout:
-        """Return the layout for a header; with `short_axis` the abscissa of double values has single precision.
+        """Return the layout for a header; with `short_axis`, the abscissa has single precision even if the values are double.
 
         >>> Layout(1, (8,), (20,) * 4).size
         8

@@ -22,8 +22,8 @@ _HALVINGS = 40
 class Drive:
     """Excitation of the modes (k,) of a band by the recorded inputs.
 
-    `chance` (k,) is the probability that a mode that the inputs do not excite shows at least the observed correlation with the inputs.
-    `elsewhere` (k,) is the fraction of the motion in the half-power band that the inputs do not explain.
+    `chance` (k,) is the probability of at least the observed correlation with the inputs if the inputs do not excite the mode. `elsewhere`
+    (k,) is the fraction of the motion in the half-power band that the inputs do not explain.
     """
 
     chance: Array
@@ -33,12 +33,12 @@ class Drive:
 def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[Drive]:
     """Test whether the recorded inputs excite each mode, band by band.
 
-    The modal motion q is what remains of the outputs after subtraction of all other fitted components, as a mean weighted with the shape
-    and the inverse noise variance. At the frequency f, the modal force plus output noise is q (j f - p), where p is the pole in Hz. The
-    modal force is regressed on inputs and transients. The regression uses the lines within four half-widths, at least three times as many
-    as regressors. Without excitation by the inputs the explained fraction is F-distributed, regardless of unrecorded forces or tones. A
-    line is weighted with the inverse of its variance a + b |j f - p|^2: a is the variance of the unrecorded force, which follows from the
-    residual, and b is the variance of q due to noise of the outputs. The lines nearest to the pole, as many as there are regressors, have
+    All other fitted components are subtracted from the outputs. The modal motion q is the mean of the remaining outputs, weighted with the
+    shape and the inverse noise variance. At the frequency f, the modal force plus output noise is q (j f - p), where p is the pole in Hz.
+    The modal force is regressed on inputs and transients. The regression uses the lines within four half-widths, but at least three lines
+    for each regressor. If the inputs do not excite the mode, the explained fraction is F-distributed even with unrecorded forces or tones.
+    A line is weighted with the inverse of its variance a + b |j f - p|^2. The variance a of the unrecorded force follows from the residual;
+    b is the variance of q due to noise of the outputs. The variance is increased near the pole, so that as many lines as regressors have
     similar weights. Transients count as inputs if the inputs explain at least nine tenths of their power, as for an impact at the start of
     a record.
 

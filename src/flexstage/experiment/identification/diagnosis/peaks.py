@@ -50,9 +50,10 @@ class PeakCause(Enum):
 class Peak:
     """Peak at `frequency` in Hz, with a half-power `width` in Hz; the width is absent if it is at most one line.
 
-    `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of this
-    peak without a mode: that noise is as pure as a tone, that noise is as strong as a weak or narrow peak, or that inputs explain as much
-    motion as in an undriven peak. An accepted mode has a probability of at most 1e-9, and a width above the line spacing.
+    `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
+    peak without a mode. For a tone, noise must be as pure; for a weak or narrow peak, noise must be as strong; for an undriven peak, the
+    inputs must explain as much of the motion by chance. Modes are accepted with a probability of at most 1e-9 and a width above the line
+    spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(

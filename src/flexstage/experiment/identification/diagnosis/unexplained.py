@@ -16,8 +16,8 @@ _WIDTHS = 1.0
 def excess(band: Band, modal: Modal) -> Array:
     """Compute the excess of the residual chi-squared in each cell (c,), in standard deviations.
 
-    In every cell, responses linear in frequency are fitted to the residual. With noise only, the power that they explain, divided by the
-    noise variance, has a mean and a variance equal to their number of complex parameters.
+    In every cell, responses linear in frequency are fitted to the residual. With noise only, the explained power divided by the noise
+    variance has a mean and a variance equal to the number of complex parameters.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -37,7 +37,7 @@ def excess(band: Band, modal: Modal) -> Array:
 
 
 def suggest_mode(band: Band, modal: Modal, cell: int) -> Modal:
-    """Add a mode to `modal` in cell number `cell`, with the strongest participation in the cell's residual.
+    """Add a mode to `modal` at the middle of cell number `cell`; its participation is the strongest in the cell's residual.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()

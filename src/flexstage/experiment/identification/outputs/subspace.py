@@ -33,7 +33,7 @@ _SINGULAR = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class AmbientMode:
-    """Mode of a stage under floor excitation: `pole` in Hz (rad/s over 2 pi), and `shape` (p,) with largest component 1.
+    """Mode of a stage under floor excitation: `pole` in Hz (rad/s divided by 2 pi), and `shape` (p,) with largest component 1.
 
     Standard deviations are `width_deviation` for the pole's real part, `deviation` for its imaginary part, and `shape_deviation` (p,) for
     the shape.
@@ -48,10 +48,10 @@ class AmbientMode:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Covariances of the outputs in a frequency band, by block (b, lags, p, p), with lags in steps of `step` [s].
+    """Covariances (b, lags, p, p) of the outputs in a frequency band, for b blocks, at lags that are multiples of `step` [s].
 
-    Frequencies are shifted down by `low` [Hz]. `sweep` has the limits of the band, and of its part in which poles are kept. Outputs are
-    multiplied by `scale` (p,).
+    Frequencies are shifted down by `low` [Hz]. `sweep` contains the limits of the band, and the narrower limits within which poles are
+    kept. Outputs are multiplied by `scale` (p,).
     """
 
     covariances: Array
@@ -62,12 +62,12 @@ class Band:
 
 
 def band_covariances(record: Record, low: float, high: float) -> tuple[list[list[Band]], Responses]:
-    """Compute output covariances of bands from `low` to `high` in Hz by division and block, and the output density in unit/Hz^0.5.
+    """Compute output covariances of bands from `low` to `high` in Hz, for both divisions into bands, and the output density in unit/Hz^0.5.
 
-    Each block is Fourier transformed. The lines of a band, tapered at its ends, are multiplied in pairs of outputs. The inverse transform
-    of the products is the band's covariance R(l) = E[y(n + l) y(n)^H] of the outputs y. This procedure is equivalent to mixing and
-    decimation. R is divided by 1 - l/N, the fraction of the block's N samples available at lag l. Outputs are divided by their root mean
-    squares. The density of the floor motion need only be smooth within each band.
+    Each block is Fourier transformed. The lines of a band are multiplied for each pair of outputs, and tapered at the ends of the band. The
+    inverse transform of these products is the band's covariance R(l) = E[y(n + l) y(n)^H] of the outputs y. This procedure is equivalent to
+    mixing and decimation. R is divided by 1 - l/N, the fraction of the block's N samples available at lag l. Outputs are divided by their
+    root mean squares. The density of the floor motion need only be smooth within each band.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
@@ -172,15 +172,15 @@ def _roots(covariances: Array, rows: int) -> tuple[Array, Array]:
 def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[AmbientMode]]:
     """Identify the modes of a band by stochastic subspace identification, with the stabilisation diagram.
 
-    The Hankel matrix H of covariances is factored as H = O Z for increasing orders. O is the observability matrix; the poles follow from
-    the state matrix A in O(shifted) = O A. H is weighted with the inverse matrix roots W and V of the future and past covariances. The
-    singular values of W H V are canonical correlations: weakly and strongly excited modes have equal weight (Van Overschee & De Moor,
-    Subspace Identification for Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855).
+    The Hankel matrix H of covariances is factored as H = O Z for increasing orders. O is the observability matrix. The poles follow from
+    the state matrix A: O A equals O shifted by one lag. H is weighted with the inverse matrix roots W and V of the future and past
+    covariances. The singular values of W H V are canonical correlations: weakly and strongly excited modes have equal weight (Van Overschee
+    & De Moor, Subspace Identification for Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855).
 
-    The equations are projected onto the signal subspace of the whole record, the first singular vectors U and R of W H V. A then has the
-    eigenvalues of (U^H W H V R)^-1 U^H W H(shifted) V R. Standard deviations follow from a first-order perturbation of this projection by
-    the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band bias low orders, and spurious poles
-    bias high orders: the order is therefore selected for each mode (`_select_order`).
+    The equations are projected onto the signal subspace of the whole record, spanned by the first singular vectors U and R of W H V. A then
+    has the eigenvalues of (U^H W H V R)^-1 U^H W H' V R, where H' is H shifted by one lag. Standard deviations follow from a first-order
+    perturbation of this projection by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band
+    bias low orders, and spurious poles bias high orders: the order is therefore selected for each mode (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)

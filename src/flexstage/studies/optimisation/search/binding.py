@@ -22,7 +22,7 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
 
     The multipliers come from a convex model with unit curvature around the optimum; the minimum of this model is the optimum itself. If the
     minimum of the objective c_0 is sought under limits c_i <= e_i, the multiplier of limit i is the derivative -d c_0 / d e_i of this
-    minimum. Because they are derivatives, multipliers are valid for small changes; for repeated modes they are one-sided.
+    minimum. Multipliers are derivatives, and therefore valid for small changes only; for repeated modes, they are one-sided derivatives.
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))

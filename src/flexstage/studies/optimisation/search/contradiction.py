@@ -19,7 +19,7 @@ _COUNTS = 1e-4
 def contradictions(
     setting: Setting, starts: Sequence[Array], report: CountReport | None = None, *, most: int = 6
 ) -> tuple[Contradiction, ...]:
-    """Find at most `most` irreducible infeasible sets of limits, from any of the starts. Returns an empty tuple if all limits can be met.
+    """Find at most `most` irreducible infeasible sets of limits by searches from `starts`. Returns an empty tuple if all limits can be met.
 
     The largest relative violation is minimised. Then limits are removed as long as the remaining limits still contradict each other. The
     resulting set is irreducible: if any one of its limits is removed, the others can be met. The search is repeated for the limits that are

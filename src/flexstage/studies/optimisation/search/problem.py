@@ -64,7 +64,7 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Linear model of a side: after a change d of the n variables, c is the largest eigenvalue of a matrix of k modes.
+    """Linear model of a `Side`: after a change d of the n variables, its value c is the largest eigenvalue of a matrix of k modes.
 
     This matrix is `constant` (k, k) plus the sum of d_p times the matrix p of `slope` (n, k, k) over all variables p. For m scalar values,
     the matrices are diagonal, and only their diagonals (m,) and (n, m) are stored.
@@ -79,7 +79,7 @@ class Linear:
         return self.constant.ndim == 1
 
     def project(self, vector: Array) -> tuple[float, Array]:
-        """Return constant and gradient (n,) of v^T C v for a vector v and the model's matrix C; for a unit vector, it is at most c."""
+        """Return constant and gradient (n,) of v^T C v with a `vector` v and the model's matrix C. For a unit vector, v^T C v <= c."""
         return float(vector @ self.constant @ vector), np.einsum("i,pij,j->p", vector, self.slope, vector)
 
     def after(self, change: Array) -> tuple[Array, Array]:
@@ -90,9 +90,9 @@ class Linear:
 def linear(side: Side, point: Point) -> Linear:
     """Linearise a side around a design.
 
-    A lower bound of a minimum, or an upper bound of a maximum, applies to all pieces of the measure. A lower bound of a maximum, or an
-    upper bound of a minimum, applies only to the active piece. A lower bound of a frequency applies to all modes from the requested number
-    upward, an upper bound to all modes up to this number.
+    A lower bound of a minimum, or an upper bound of a maximum, applies to all pieces (values) of the measure. A lower bound of a maximum,
+    or an upper bound of a minimum, applies only to the active piece. A lower bound of a frequency applies to all modes from the requested
+    number upward, an upper bound to all modes up to this number.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0, 2.0]), np.ones((2, 1)), Extreme.LEAST),))
     >>> linear(Side(0, Sense.AT_LEAST, 1.0, 1.0), at).constant.tolist()

@@ -46,10 +46,10 @@ class Trace:
 def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough: float = -np.inf) -> Walk:
     """Search from a `start` (n,), given by fractions of the ranges.
 
-    The search ends early if the largest constraint value c of the objective's sides is at most `enough`. The method is sequential quadratic
-    programming with an exact penalty for the largest violation (Fletcher & de la Maza, Mathematical Programming 43 (1989) 235). The
-    Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The multipliers of modes are transferred to the next design by
-    the overlap of mode shapes. `trace` can be read during the search.
+    The search ends early if the objective, the largest constraint value c of its sides (see `Side`), is at most `enough`. The method is
+    sequential quadratic programming with an exact penalty for the largest violation (Fletcher & de la Maza, Mathematical Programming 43
+    (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The multipliers of modes are transferred to
+    the next design by the overlap of mode shapes. `trace` can be read during the search.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

@@ -21,11 +21,11 @@ _ROOM = 6
 class Spectrum:
     """k modes of one design: ascending `frequencies` (k,) [Hz] and their `slopes` (n, k, k) [Hz per unit of each variable].
 
-    To first order, the frequencies after a small change d of the n variables are the eigenvalues of diag(f) plus the sum of d_p slopes_p
-    over the variables p, for distinct, repeated or crossing modes. The entries are slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM)
-    phi_j / (2 pi (omega_i + omega_j)). Here f are the `frequencies`, phi the mode shapes, lambda = omega^2 the eigenvalues, and dK and dM
-    the changes of the stiffness and mass matrices per unit of the variable p. `shapes` (N, k) and `weighted`, the mass matrix times
-    `shapes`, are used to pair the modes of two designs.
+    To first order, a small change d of the n variables changes the frequencies to the eigenvalues of diag(f) plus the sum of d_p slopes_p
+    over the variables p. This also applies to repeated and crossing modes. The entries are slopes_ij = phi_i^T (dK - (lambda_i +
+    lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). Here f are the `frequencies`, phi the mode shapes, lambda = omega^2 the eigenvalues,
+    and dK and dM the changes of the stiffness and mass matrices per unit of the variable p. `shapes` (N, k) and `weighted`, the mass matrix
+    times `shapes`, are used to pair the modes of two designs.
     """
 
     frequencies: Array

@@ -22,8 +22,8 @@ _SAME = 9
 class Step:
     """Result of one step: the `change` (n,) of the design in fractions of the ranges, and the multipliers `weights` of all sides.
 
-    `gain` is the model's improvement of the merit function (objective plus `penalty` times violation); `excess` is the violation of limits
-    that remains in the model.
+    `gain` is the predicted improvement of the merit function (objective plus `penalty` times violation); `excess` is the predicted
+    remaining violation of limits.
     """
 
     change: Array
@@ -64,8 +64,8 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
 
     To first order, t is an upper bound of the objective's increase, and s >= 0 is an upper bound of the violation of every limit. Sides of
     frequencies are matrices. Eigenvectors of the changed matrices are added as planes until no eigenvalue exceeds the bound set by t
-    (objective) or s (limits). This method of planes is exact even for crossing modes. With `tried`, the planes are shifted so that they
-    match the values of this design. Without such shifts (second-order correction), the steps along curved limits would be short.
+    (objective) or s (limits). This method of planes is exact even for crossing modes. If a design was `tried`, the planes are shifted so
+    that they match its values (second-order correction). Without such shifts, the steps along curved limits would be short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

@@ -38,7 +38,7 @@ class Piece:
 
 
 def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> Piece:
-    """Compute the designs from `start` to before `stop` of a study's plan. If `engine` is absent, the study's own engine is made.
+    """Compute the designs `start` to `stop` (excluded) of a study's plan. If `engine` is absent, the study's own engine is made.
 
     An invalid design, or a design without a value, gets NaN and the reason.
 

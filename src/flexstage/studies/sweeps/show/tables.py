@@ -111,7 +111,7 @@ def pair_table(found: Effects) -> Table:
 
 
 def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
-    """Format a fraction of a variance in percent, with a bar of this length.
+    """Format a fraction of a variance in percent, with a bar of proportional length.
 
     >>> share_cell(0.25).text, share_cell(float("nan")).text
     ('25.0 %', '-')
