@@ -110,7 +110,7 @@ class RecordTexts:
     excitation: Excitation | None = None
 
     def options(self) -> options.Options:
-        """Return these options as options of the record reader; raises `DesignError` with all errors."""
+        """Convert these strings to options of the record reader; raises `DesignError` with all errors."""
         findings: list[Finding] = []
         units = _units(self.units, findings)
         accepted = [_word("--accept-fault", word, options.FaultTolerance, findings) for word in names(self.accept_fault)]

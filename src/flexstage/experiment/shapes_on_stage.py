@@ -46,10 +46,10 @@ class StageShapes:
 def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     """Fit ideal stage motions to the measured shapes s by least squares: the platform twists are x = V (R V)^+ s.
 
-    The columns of V are the ideal motions, and (R V)^+ is the pseudo-inverse. Each row of R maps the platform twist to an output: a gauge's
-    reading by its row of the matrix R_s, or a component of a body's twist. Rotations are weighted by the kinematics' characteristic length.
-    For six gauges the result equals R_s^-1 s (Eq. 14 of Shin & Moon). All bodies move with the ideal kinematics: hinges are free about
-    their intended axes.
+    The columns of V are the ideal motions, and (R V)^+ is the pseudo-inverse. Each row of R maps the platform twist to an output: to a
+    gauge's reading (a row of the matrix R_s) or to a component of a body's twist. Rotations are weighted by the kinematics' characteristic
+    length. For six gauges the result equals R_s^-1 s (Eq. 14 of Shin & Moon). All bodies move with the ideal kinematics: hinges are free
+    about their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -35,8 +35,8 @@ class VariedTable:
     """A variable of a study: one or several numbers of the design (`address`), or parameters of the case (`parameter`).
 
     Several numbers change together. Without `address` and `parameter`, the variable's name is the address. `from` and `to` are the ends of
-    the range, with units or in percent of the design's value. `logarithmic`: equally spaced values have equal ratios. `levels`: number of
-    values in a grid. `step`: manufacturing increment; rounded values are multiples of it.
+    the range, with units or in percent of the design's value. `logarithmic`: values are spaced by equal ratios. `levels`: number of values
+    in a grid. `step`: manufacturing increment; rounded values are multiples of it.
     """
 
     low: Amount = field(metadata={KEY: "from"})
@@ -100,8 +100,8 @@ class ScatterTable:
 class ToleranceTable:
     """Number of `copies` (samples), their `sampling` and `seed`, and the required `yield` of each requirement.
 
-    `requirements`: the requirements of the design file are included. `crosstalk`: compute the platform's crosstalk at a `point` (default:
-    if the strokes determine the platform).
+    `requirements`: the requirements of the design file are included. `crosstalk`: compute the platform's crosstalk at a `point` (by
+    default, if the strokes determine the platform's pose).
     """
 
     copies: Annotated[int, _TWO] = 1024

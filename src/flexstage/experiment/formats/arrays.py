@@ -60,7 +60,7 @@ class Variable:
         return self.read(())
 
     def samples(self, axis: int) -> Samples:
-        """Return samples along an axis as floats, which are read on demand. The other axes are the channels, in order."""
+        """Return the array as samples along an axis, read on demand as floats. The other axes are the channels, in order."""
 
         def read(start: int, stop: int) -> Array:
             spans = [(0, length) for length in self.shape]

@@ -39,7 +39,7 @@ def is_hdf(start: bytes, _suffix: str) -> bool:
 
 
 def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """Read an HDF5 file as arrays by name, which stay in the file. Columns of tables are separate arrays.
+    """Read an HDF5 file as arrays by name. Samples stay in the file. Columns of tables are separate arrays.
 
     Lists of names, units and roles are attributes of the array, or separate arrays. Single values may be attributes of the file. Raises
     `DesignError` for an invalid, truncated or damaged file, and whenever `read_arrays` raises it.

@@ -46,7 +46,7 @@ def sweeps(low: float, high: float) -> list[Sweep]:
 
 
 def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0, together: float = TOGETHER) -> list[Extent]:
-    """Divide poles (k,) in Hz, ascending, into bands for joint fits.
+    """Divide ascending poles (k,) in Hz into bands for joint fits.
 
     Two successive poles share a band if they are closer than `together` times the sum of their half-widths. A half-width is -Re(pole), or
     the lines' `resolution` in Hz if this is larger. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. A band

@@ -91,8 +91,8 @@ def _shared_noise(power: Array, lines: float) -> Array:
 def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:
     """Compute standard deviations of a fit by the Cramer-Rao bound: the covariance is I^-1, the inverse of the Fisher information.
 
-    `inflation` multiplies the variances. If `scatter` is given, the covariance S of the gradient, the parameters have the covariance I^-1 S
-    I^-1, which is also valid for noise correlated between outputs (White 1982).
+    `inflation` multiplies the variances. `scatter` is the covariance S of the gradient. If it is given, the covariance of the parameters is
+    I^-1 S I^-1, which is also valid for noise correlated between outputs (White 1982).
 
     The residual is analytic in its complex parameters, so real and imaginary parts each have half of the covariance. The common scale
     factor of a shape and its participation is arbitrary; fixing the largest participation eliminates it.
@@ -118,7 +118,7 @@ def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None)
 
 
 def significance(band: Band, found: Fit, limit: float) -> Array:
-    """Compute the test statistic (k,) for the presence of each mode: chi-squared with `freedoms` degrees of freedom if the mode is absent.
+    """Compute the test statistic (k,) for each mode. Without the mode, it is chi-squared distributed with `freedoms` degrees of freedom.
 
     The test statistic is Wald's, 2 phi^H C^-1 phi, for the mode's shape phi with covariance C. If Wald's statistic is below fifty times
     `limit`, the likelihood ratio replaces it (Wilks 1938): twice the decrease of the log-likelihood when the mode is removed and the others

@@ -214,8 +214,8 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
     """Compute the lower bound of the noise variance (p, c) per line.
 
     Cells represent responses with a relative error e of 1e-6. This error is common to all N lines, so averaging does not reduce it. The
-    lower bound is N e^2 times the power of the output per line, or `rounding` (p,) if this is larger: the variance caused by rounding of
-    samples. It prevents false modes and confidence intervals that are too narrow.
+    lower bound is the larger of N e^2 times the power of the output per line and `rounding` (p,), the variance caused by rounding of
+    samples. The lower bound prevents false modes and confidence intervals that are too narrow.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells

@@ -21,7 +21,7 @@ TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min":
 
 
 def round_nominal(value: float, uncertainty: float) -> float:
-    """Find the number within the uncertainty of a value that has the fewest digits, or whose inverse has the fewest digits.
+    """Within the uncertainty of a value, find the number with the fewest digits, counted in the number or in its inverse.
 
     `uncertainty` is the relative uncertainty of the value.
 
@@ -89,7 +89,7 @@ def read_clock(times: Array, where: str) -> Clock:
 
 
 def determine_clock(samples: Samples, options: Options, where: str, *, scale: float = 1.0, stated: float | None = None) -> Clock:
-    """Determine the sampling clock from the first column of samples: times in units of `scale` [s].
+    """Determine the sampling clock from the first column of samples, the times in units of `scale` [s].
 
     A rate `stated` in the file [Hz] replaces the rate that follows from the times; both rates must agree within a thousandth. Raises
     `DesignError` for faulty times.

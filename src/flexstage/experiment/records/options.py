@@ -62,7 +62,7 @@ class FaultTolerance(Enum):
 
 @dataclass(frozen=True)
 class Arrays(CheckedFields):
-    """Assignment of arrays of a MAT or HDF5 file, or of columns of a CSV file: names or patterns.
+    """Names or patterns that assign the arrays of a MAT or HDF5 file, or the columns of a CSV file.
 
     A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of strings, one per channel. Responses
     have `frequencies` [Hz], complex `responses`, and optional `coherence`. Default names are those in files written by flexstage. For a CSV

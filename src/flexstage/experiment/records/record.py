@@ -97,9 +97,9 @@ def changed_samples(samples: Samples, change: Callable[[Array], Array]) -> Sampl
 class Record(InNotebook, CheckedFields):
     """Channels sampled together at a constant rate.
 
-    `rate` in Hz; `start` is the time of the first sample in s. `samples` are (n, channels) numbers in the channels' own units. `name` and
-    `source` identify the record and its file. Raises `DesignError` for an invalid rate, for missing or unnamed channels and for duplicate
-    names.
+    `rate` is in Hz; `start` is the time of the first sample in s. `samples` are (n, channels) numbers in the channels' own units. `name`
+    and `source` identify the record and its file. Raises `DesignError` for an invalid rate, for missing or unnamed channels and for
+    duplicate names.
 
     >>> both = (Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT))
     >>> shaken = Record(both, 2048.0, InMemory(np.zeros((4096, 2))))
@@ -126,7 +126,7 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """Kind of data: `record` (`responses` for frequency responses)."""
+        """Kind of data: `record`, in contrast to `responses`."""
         return "record"
 
     @property
@@ -248,7 +248,7 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """Kind of data: `responses` (`record` for samples)."""
+        """Kind of data: `responses`, in contrast to `record`."""
         return "responses"
 
     @property

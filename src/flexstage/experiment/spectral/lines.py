@@ -26,8 +26,8 @@ BLOCK = 12_000_000
 class Lines:
     """Fourier transform of one block of a record at its `frequencies` (k,) in Hz: `drive` (k, n) and `outputs` (k, p).
 
-    The transform is scaled so that the mean square of white noise is the same at every frequency as in time. The columns of `drive` are the
-    inputs and a transient; `columns` (n,) are their indices among the columns of all blocks.
+    The transform is scaled so that white noise has the same mean square at every frequency as in the time domain. The columns of `drive`
+    are the inputs and a transient; `columns` (n,) are their indices among the columns of all blocks.
     """
 
     frequencies: Array

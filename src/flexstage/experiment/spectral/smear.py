@@ -20,9 +20,9 @@ SMEARING = (Window.BOXCAR, Window.HANN)
 class WindowLeakage:
     """Effect of the `window` on estimated responses, for segments of length `seconds`.
 
-    With white noise as input, the estimated impulse response is the true impulse response times r(t/T), the window's autocorrelation r for
-    a segment of duration T. A fit accounts for the window: its functions 1/(j f - p) of the frequency f, with poles p, are smeared in the
-    same way.
+    With white noise as input, the estimated impulse response is the true impulse response times r(t/T), with the window's autocorrelation r
+    and the duration T of a segment. A fit accounts for the window: its functions 1/(j f - p) of the frequency f, with poles p, are smeared
+    in the same way.
     """
 
     window: Window

@@ -27,7 +27,7 @@ class NoiseDrive(CheckedFields):
     """Independent Gaussian noise drive of the actuators.
 
     `stroke` [m] and `voltage` [V] are the rms of a stack's commanded free stroke or voltage. `current` [A], `force` [N] or `torque` [N m]
-    is the rms of a force actuator's input. Default: 1 % of a stack's full stroke, or of a force actuator's sustained input limit.
+    is the rms of a force actuator's input. The default is 1 % of a stack's full stroke, or of a force actuator's sustained input limit.
 
     The density is constant within `band` (low, high) [Hz], by default 0 to 0.4 times the sampling rate. The density decays to zero from
     `low` to `low`/2 and from `high` to 1.25 `high`. `actuators` names the driven and recorded actuators (default: all).

@@ -33,7 +33,7 @@ class RequestedMeasure:
 
     @property
     def key(self) -> Annotated[str, VIEW, Called("measure")]:
-        """The measure, as in `[requirements]`."""
+        """The measure's key, as in `[requirements]`."""
         return self.measure.key
 
     @property
@@ -43,7 +43,7 @@ class RequestedMeasure:
 
     @property
     def unit(self) -> Annotated[str, VIEW]:
-        """The SI unit of its values."""
+        """The SI unit of the measure."""
         return self.measure.quantity.si
 
 
@@ -148,7 +148,7 @@ class Study:
         return measure_all(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
 
     def feasible(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
-        """Find the designs (n,) that meet all limits, from all responses (n, r). A design without values does not meet a limit.
+        """Return the mask (n,) of designs that meet all limits, from all responses (n, r). A design without values does not meet a limit.
 
         `limits` replaces the limits of the study.
 

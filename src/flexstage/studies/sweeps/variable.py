@@ -25,11 +25,11 @@ _STEP = 1e-20
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of a study, from `low` to `high` in the SI unit of `quantity`, which sets the numbers at all its `addresses`.
+    """A variable of a study that sets the numbers at all `addresses` to a value from `low` to `high`, in the SI unit of `quantity`.
 
-    `relative`: low and high are factors on the design's value at each address. `logarithmic`: equally spaced values have equal ratios.
-    `levels` is the number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment; rounded values are
-    multiples of it. With a `variant`, the addresses are parameters of that case; the design is rebuilt from the case's parameters.
+    `relative`: low and high are factors on the design's value at each address. `logarithmic`: values are spaced by equal ratios. `levels`
+    is the number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment; rounded values are multiples
+    of it. With a `variant`, the addresses are parameters of that case; the design is rebuilt from the case's parameters.
     """
 
     name: str

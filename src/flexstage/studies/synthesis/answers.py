@@ -41,7 +41,7 @@ FIRST = 3
 
 @dataclass(frozen=True, eq=False)
 class Answers(InNotebook):
-    """The outcome of a specification: `answers`, the best first, `failed` pairs, and `impossible` pairs, which a bound excludes.
+    """The outcome of a specification: `answers` (best first), `failed` pairs, and `impossible` pairs, which a bound excludes.
 
     `interrupted`: some pairs were not searched.
     """
@@ -74,10 +74,10 @@ def design(  # noqa: PLR0913 (its options)
     """Design stages for a specification: every architecture that has the required motions, with every allowed actuator of the catalogue.
 
     First, pairs that cannot meet a bound are excluded (`flexstage.studies.synthesis.bounds`). The other pairs are optimised within the
-    requirements by `studies.optimise`. Limits are corrected and optimisation is repeated as long as a requirement is missed with elastic
-    bodies or at large displacements. For the first three answers, `verify` (such as `solid.required_values`) repeats the search with finite
-    elements. `tolerance` computes their yield, and `close_loop` (such as `control.sensitivity_crossover`) the sensitivity crossover of
-    their control loop. If `architectures` is empty, all are used.
+    requirements by `studies.optimise`. As long as a design misses a requirement with elastic bodies or at large displacements, limits are
+    corrected and optimisation is repeated. For the first three answers, `verify` (such as `solid.required_values`) repeats the search with
+    finite elements. `tolerance` computes their yield, and `close_loop` (such as `control.sensitivity_crossover`) the sensitivity crossover
+    of their control loop. If `architectures` is empty, all are used.
 
     `finished` receives the result of each pair as soon as it is known, and again after each change.
 

@@ -51,7 +51,7 @@ def frequency_bound(energy: float, displacements: Mapping[str, float], masses: M
 
 
 def displacement_factor(energy: float, displacements: Mapping[str, float], masses: Mapping[str, float], frequency: float) -> float:
-    """Return the largest factor on all displacements at which the bound of the frequency [Hz] is still met.
+    """Return the largest factor on all displacements for which the frequency [Hz] is still within its bound.
 
     >>> both = {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}
     >>> round(0.5e-3 * displacement_factor(2 * stroke_energy(1e-3, 0.35e6), *both, 500.0) * 1e6, 1)

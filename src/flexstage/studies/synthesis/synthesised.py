@@ -214,7 +214,7 @@ class Layer:
         return sorted({(_part(each), "xyz"[each.place.face]) for each in self.guide.elements})
 
     def named(self, text: str) -> str:
-        """Return a text with the names of this guide's own numbers and parts."""
+        """Return a text with the guide's number appended to the names of its own numbers and parts."""
         return text if self.number == 1 else re.sub(_OWN, rf"\1_{self.number}", text)
 
     def point(self, place: Place, outside: str = "") -> str:

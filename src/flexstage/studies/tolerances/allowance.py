@@ -43,7 +43,7 @@ class Allowance:
     its limit that the fraction `wanted` of the samples does not exceed; `share` (m, l) is the fraction of the square of `reach` due to each
     entry. `together` is the factor on all deviations, limited by the requirement `binding`; it is 0 if the nominal design fails. `alone`
     (m,) are factors on single entries with the others unchanged; the requirements `binds` (m,) limit these factors. `equal` (m,) are
-    simultaneous factors on all entries, so that each entry uses the same fraction of the margin. A factor is infinite if the entry has no
+    simultaneous factors on all entries, for which each entry uses the same fraction of the margin. A factor is infinite if the entry has no
     effect. `then` is the yield if the changes of all responses in the sample are multiplied by `together`.
     """
 

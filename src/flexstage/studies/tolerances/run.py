@@ -62,7 +62,7 @@ class Toleranced(StudyResult):
 
     @property
     def crosstalk(self) -> Annotated[tuple[Crosstalk, ...], VIEW]:
-        """Pose errors of the samples, if strokes are commanded, or poses measured, with the nominal mapping."""
+        """Pose errors of the samples if the nominal mapping commands the strokes (open loop) or measures the pose (closed loop)."""
         return self.summary.crosstalk
 
     def _response(self, column: int, name: str) -> ResponseSpread:
@@ -89,7 +89,7 @@ def tolerance(
     how: Run = DEFAULT,
     progress: Progress | None = None,
 ) -> Toleranced:
-    """Run a tolerance study. If a `path` is specified, the samples are stored in this results file, as `sweep` does.
+    """Run a tolerance study. If a `path` is specified, the samples are stored in this results file, as by `sweep`.
 
     Raises `DesignError` in the same cases as `sweep`.
 

@@ -36,11 +36,11 @@ class Slopes:
 
 
 def slopes(study: Tolerance) -> Slopes:
-    """Compute the derivatives of all columns of a study by complex step, and those of frequencies from the modes.
+    """Compute the derivatives of all columns of a study: of frequencies from the modes, of the others by complex step.
 
     For a mass-normalised mode phi with the eigenvalue lambda, d lambda = phi^T (dK - lambda dM) phi, with the stiffness matrix K and the
-    mass matrix M. Smoothness is tested in eight random directions, with steps of a thousandth of the scatter in both senses. A response is
-    smooth if the changes in both senses are opposite and agree with the derivative.
+    mass matrix M. Smoothness is tested in eight random directions, with steps of plus and minus a thousandth of the scatter. A response is
+    smooth if its two changes are opposite and agree with the derivative.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> found = slopes(leaf_study())

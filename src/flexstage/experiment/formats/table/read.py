@@ -36,7 +36,7 @@ def is_text(_start: bytes, _suffix: str) -> bool:
 
 
 def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    r"""Read a CSV file: responses if a column is named `frequency` or assigned as frequencies by the user, else a record.
+    r"""Read a CSV file. It contains responses if a column is named `frequency` or assigned as frequencies, else a record.
 
     Times are in the column `time`, or in the assigned column. Raises `DesignError` if both times and rate are missing. Gaps between times
     are accepted only with `FaultTolerance.GAPS`, a truncated last line only with `FaultTolerance.TRUNCATED`, which omits it.

@@ -51,12 +51,12 @@ class _Residue:
 def common_delay(found: Identified) -> Delay | None:
     """Estimate the common delay of all outputs, assuming proportional damping.
 
-    In a proportionally damped stage, a mode's residue R in the response H = R/(s - p) + ... with the pole p is imaginary (real for a
+    In a proportionally damped stage, a mode with the pole p has the response H = R/(s - p) + ... with an imaginary residue R (real for a
     velocity; Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1). A delay tau multiplies the residue by e^{-p tau}, so
-    that the phase falls with frequency. Lags and filters count as delay if they have the same phase as a delay. The signs of residues are
-    unknown. From three modes, delays up to 3 periods of the lowest mode can therefore be determined; from fewer modes, up to 0.45 periods.
-    Among equally good delays the shortest is returned. Returns `None` if no delay makes the residues imaginary, or if the delay is not
-    significant.
+    that the phase falls with frequency. Lags and filters count as delay if they have the same phase as a delay. Because the signs of
+    residues are unknown, delays can be determined only up to 3 periods of the lowest mode; with fewer than three modes, only up to 0.45
+    periods. Among equally good delays the shortest is returned. Returns `None` if no delay makes the residues imaginary, or if the delay is
+    not significant.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

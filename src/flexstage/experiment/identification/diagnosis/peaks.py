@@ -51,9 +51,8 @@ class Peak:
     """Peak at `frequency` in Hz, with a half-power `width` in Hz; the width is absent if it is at most one line.
 
     `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
-    peak without a mode. For a tone, noise must be as pure; for a weak or narrow peak, noise must be as strong; for an undriven peak, the
-    inputs must explain as much of the motion by chance. Modes are accepted with a probability of at most 1e-9 and a width above the line
-    spacing.
+    peak without a mode: for a tone, that noise is as pure; for a weak or narrow peak, that noise is as strong; for an undriven peak, that
+    inputs explain as much motion by chance. For an accepted mode, the probability is at most 1e-9, and the width exceeds the line spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -175,8 +174,8 @@ def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
     """List prominent single lines of the residual responses.
 
     An F-test compares each line with a cubic through its neighbours, from the 2nd to the 12th on both sides. The false-alarm rate is one in
-    twenty data sets. Lines within four half-widths of a mode, or within three lines, belong to the mode and are omitted. Responses with
-    unevenly spaced lines are not tested.
+    twenty data sets. Lines within four half-widths or three lines of a mode belong to the mode and are omitted. Responses with unevenly
+    spaced lines are not tested.
 
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
     >>> rest = noise[0] + 1j * noise[1] + 30.0 * (lines == 60.0)[:, None, None]

@@ -29,7 +29,7 @@ _UNSCALED = (
 
 
 def identify_floor(records: Sequence[Record], search: Search) -> Identified:
-    """Identify the modes of a stage under floor excitation from outputs only: `shaken_modes`, band by band, with 95 % intervals.
+    """Identify the modes of a stage under floor excitation from outputs only, band by band (see `shaken_modes`), with 95 % intervals.
 
     The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require excitation in as many
     independent directions as there are modes at the same frequency. The frequency range is divided into bands in two ways, shifted by half

@@ -32,7 +32,7 @@ _KEEP = 1e-6
 def pareto_front(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Front:
     """Compute the Pareto front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 
-    First, each objective is optimised alone; then the other objective is optimised without a loss of the first one. Between the two
+    First, each objective is optimised alone; then the other objective is optimised without a loss in the first one. Between the two
     resulting designs, the first objective is optimised with equally spaced bounds on the second. Each search starts from both designs.
     Dominated designs are left out. An interruption ends the search; the result then contains the designs found so far.
     """

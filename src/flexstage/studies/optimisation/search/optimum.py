@@ -35,8 +35,8 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
 
     From every start, a sequence of convex models with exact derivatives is solved. Frequencies are represented by matrices of neighbouring
     modes, so that modes may be repeated or cross. The method is local; `Optimum.agreeing` counts the starts that end at an equally good
-    design. Without a design that meets all limits, at most `contradictory` sets of limits that contradict one another are found. A keyboard
-    interrupt ends the search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
+    design. If no design meets all limits, at most `contradictory` sets of contradicting limits are found. A keyboard interrupt ends the
+    search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> found = optimise(*leaf_study())

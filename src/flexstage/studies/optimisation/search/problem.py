@@ -44,7 +44,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Problem:
-    """Minimise the largest constraint value c of the sides in `objective`; no side in `limits` may have c > 0."""
+    """Minimise the largest constraint value c (see `Side`) of the sides in `objective`, with c <= 0 for all sides in `limits`."""
 
     objective: tuple[Side, ...]
     limits: tuple[Side, ...]

@@ -146,7 +146,7 @@ def _bfgs_update(problem: Problem, hessian: Array, before: Point, now: Point, we
 def run_searches(
     walks: Sequence[Walk], evaluate: Callable[[Array], list[Point | str]], told: Callable[[int], None] | None = None
 ) -> list[Trace]:
-    """Run searches in parallel. The designs that all searches request are evaluated as one batch.
+    """Run searches in parallel. The designs requested by the searches are evaluated together as one batch.
 
     >>> def still():
     ...     yield np.zeros(1)

@@ -100,7 +100,7 @@ def _starts(found: Optimum) -> dict[str, Start]:
 
 
 def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:
-    """Describe a contradiction: the text with the nearest values of its limits, and the advice."""
+    """Return the text on a contradiction, with the nearest possible values of its limits, and the advice."""
     said = [f"'{limit.key} {limit.text}'" for limit in each.limits]
     at = [_nearest_value(limit.key, limit.point, each.point, found) for limit in each.limits]
     least = f"the smallest violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"

@@ -380,7 +380,7 @@ def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
 
 
 def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
-    """Compare the study of a results file with this `study` in pieces of `size` designs. Yields one finding for each difference.
+    """Compare the study and the piece size of a results file with this `study` and `size`. Yields one finding for each difference.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study

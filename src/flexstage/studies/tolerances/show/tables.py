@@ -77,7 +77,7 @@ def _size(scatter: Scatter, value: float) -> str:
 
 
 def yield_table(found: Toleranced) -> Table | None:
-    """Tabulate each requirement with its nominal value and its yield. Without a specification, the table contains the reason."""
+    """Tabulate each requirement with its nominal value and its yield. Without a specification, it says why there is no yield."""
     together, failed = found.summary.together, found.summary.failed
     if together is None:
         return make_table("Yield", [""], [(_NO_YIELD,)])
