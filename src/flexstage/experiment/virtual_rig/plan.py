@@ -29,8 +29,8 @@ class DrivenInput:
     """Input of a driven actuator: free stroke [m] of a stack, current [A] or force [N] of a force actuator.
 
     `own` is the quantity of the input. `low` and `high` limit peaks, `sustained` limits the rms (infinite: no limit). `full` is the full
-    stroke or the sustained limit, of which the default drive is a fraction (NaN: unknown). `factors` convert the input to other quantities.
-    `capacitance` [F] is known for stacks only. `lag` [Hz] is the corner frequency of the coil (infinite: none).
+    stroke or the sustained limit (NaN: unknown); the default drive is a fraction of `full`. `factors` convert the input to other
+    quantities. `capacitance` [F] is known for stacks only. `lag` [Hz] is the corner frequency of the coil (infinite: none).
     """
 
     own: InputQuantity
