@@ -117,7 +117,7 @@ class ToleranceTable:
 class StudyFile:
     """A study: its initial design (`design` file, or shipped `case` with `parameters`), its responses and its limits.
 
-    `responses` contains measures by name, `limits` contains an "at least" or "at most" text for a measure. A sweep uses `variables` and
+    `responses` contains measures by name, `limits` contains texts with "at least" or "at most" by measure. A sweep uses `variables` and
     `sweep`, an optimisation `variables` and `optimise`, a tolerance analysis `scatter` and `tolerance`.
     """
 

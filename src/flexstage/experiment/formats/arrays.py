@@ -93,7 +93,7 @@ class Contents:
     objects: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def find(self, names: tuple[str, ...]) -> tuple[Variable, ...]:
-        """Find the arrays with one of the names or matching one of the patterns, in this order."""
+        """Find the arrays whose name equals or matches one of `names`, in the sequence of `names`."""
         fitting = (each for name in names for each in self.variables if matches(each.name, [name]))
         return tuple(dict.fromkeys(fitting))
 
@@ -124,7 +124,7 @@ class Contents:
 
 
 def describe(what: Record | Responses) -> dict[str, Attribute]:
-    """Build the metadata of a record or of responses in the documented form, by name.
+    """Return the metadata of a record or of responses by name, in the documented form.
 
     >>> describe(Record((Channel("u", "V"),), 50.0, side_by_side([])))["units"]
     ('V',)

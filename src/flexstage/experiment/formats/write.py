@@ -13,7 +13,7 @@ from flexstage.experiment.records.record import Record, Responses
 
 @check_arguments
 def write(path: str | os.PathLike[str], what: Record | Responses, form: str = "") -> None:
-    """Write a record or responses, in the named format or by the file's ending, completely or not at all.
+    """Write a record or responses completely or not at all, in the named format or in the format of the file's ending.
 
     Formats are `uff` (binary), `mat` (version 5), `hdf5`, `csv`, and those of other packages. Raises `DesignError` for unknown names and
     endings, for channel names or units that the format does not support, and if the file cannot be written.

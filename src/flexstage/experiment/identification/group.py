@@ -48,7 +48,7 @@ class BandModes:
     """Identified modes of the band of one `group`, with their standard deviations caused by noise, and their significance.
 
     `misfit` (k,) is the rms residual near each mode, divided by the rms noise (see `misfits`). `widening` (k,) is the inflation factor of
-    the mode's standard deviations, which follows from `misfit`.
+    the standard deviations; it follows from `misfit`.
     """
 
     group: Extent

@@ -31,7 +31,7 @@ INFLATION = (
 
 @dataclass(frozen=True)
 class IdentifiedMode:
-    """Identified mode: its number, counted from 1, 95 % intervals, complex `shape` by output and complex `participation` by input.
+    """Identified mode: number (from 1), 95 % intervals, complex `shape` for each output and complex `participation` for each input.
 
     See `Identified` for `widening`, `complexity` and `significance`.
     """

@@ -40,8 +40,8 @@ _LEAST_PARTS, _MOST_PARTS = 3, 8
 class Search(CheckedFields):
     """Search parameters: frequencies in `band` (Hz; default: the whole range of the record), damping ratios up to `highest_damping`.
 
-    `segments` are the segments of the spectra for candidate modes (default: by the record's length). `excitation` is the type of excitation
-    of the stage; without recorded inputs, `identification` identifies modes from outputs only.
+    `segments` defines the segments of the spectra for candidate modes (default: chosen by the record's length). `excitation` is the type of
+    excitation of the stage; without recorded inputs, `identification` identifies modes from outputs only.
     """
 
     band: tuple[float, float] | None = None

@@ -54,7 +54,7 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """Sampling clock: rate [Hz], first time [s], and intervals without gaps: sample numbers (start, stop) and start times [s]."""
+    """Sampling clock: rate [Hz], first time [s], and intervals without gaps, by sample numbers (start, stop) and start times [s]."""
 
     rate: float
     start: float

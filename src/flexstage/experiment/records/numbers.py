@@ -25,7 +25,7 @@ class Numbers:
     `broken` of `count` samples are not finite; `first_broken` is the index of the first such sample. The longest interval of constant value
     starts at sample `still_from`, and has `still` samples with the value `still_at`. `lows` and `highs` are the lowest and highest samples,
     as many as are needed to distinguish clipping from a tail of the distribution. `step` is the smallest nonzero difference of successive
-    samples. `pairs` are the lowest and the highest of the values at which two successive samples are equal.
+    samples. `pairs` are the lowest and the highest value of equal successive samples.
     """
 
     count: int = 0

@@ -209,8 +209,8 @@ class Record(InNotebook, CheckedFields):
 class Responses(InNotebook, CheckedFields):
     """Frequency responses of an analyser, each the output divided by the input, for the time dependence e^{+j omega t}.
 
-    `frequencies` (f,) are in Hz, ascending. `values` (f, outputs, inputs) are complex; the unit of a value is that of the output divided by
-    that of the input. `coherence`, if stored, has the shape of `values`; `window` and `averages` are set if the file specifies them. Raises
+    `frequencies` (f,) are in Hz, ascending. `values` (f, outputs, inputs) are complex; the unit of a value is the output's unit divided by
+    the input's unit. `coherence`, if stored, has the shape of `values`; `window` and `averages` are set if the file specifies them. Raises
     `DesignError` for duplicate names of outputs or of inputs and for shapes that do not match.
 
     >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))

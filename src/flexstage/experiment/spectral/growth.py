@@ -13,7 +13,7 @@ _RATIOS = np.geomspace(1e-6, 1e6, 121)
 
 
 def noise_growth(frequencies: Array, responses: Array) -> Array:
-    """Estimate the growth factor g (p,) of the noise of every output of responses H (f, p, m); an insignificant g is zero.
+    """Estimate the growth factor g (p,) of every output's noise from responses H (f, p, m); an insignificant g is set to zero.
 
     The noise variance of an output is modelled as a (1 + g |H|^2) with a constant a. Amplitude steps of a shaker, ranges of an analyser and
     files with few digits cause errors proportional to the response. To estimate the variance at a frequency line, a rational function is

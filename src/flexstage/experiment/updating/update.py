@@ -168,11 +168,11 @@ class Updated(InNotebook):
 
     A small standard deviation of a logarithm equals the relative standard deviation of the value. `addresses` (P,) are the full addresses
     of the P parameters. `prior` (P,) are prior standard deviations and `covariance` (P, P) is the posterior covariance of the logarithms.
-    The columns of `directions` (P, P) are combinations of parameters, in units of prior standard deviations, best identified first. Of the
-    prior variance of a combination with the singular value s in `singular` (P,), the fraction 1/(1 + s^2) remains. `chi_square` is the sum
-    of squared residuals of data and priors after the update; `freedoms` is the number of data. `chi_square_before` is the sum of squared
-    residuals of the data before the update. `mechanism` is the updated description. `data_warnings` lists the reasons why results may be
-    unreliable.
+    The columns of `directions` (P, P) are combinations of parameters, in units of prior standard deviations, best identified first. For a
+    combination with the singular value s in `singular` (P,), the fraction 1/(1 + s^2) of the prior variance remains. `chi_square` is the
+    sum of squared residuals of data and priors after the update; `freedoms` is the number of data. `chi_square_before` is the sum of
+    squared residuals of the data before the update. `mechanism` is the updated description. `data_warnings` lists the reasons why results
+    may be unreliable.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]

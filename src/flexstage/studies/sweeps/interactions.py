@@ -95,8 +95,8 @@ def rank_bins(column: Array, count: int) -> Array:
 def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
     """Estimate the effect (b, r) of each bin of a variable on responses (n, r), relative to the mean response.
 
-    `bins` contains, for each variable, the number of the bin of each of the n designs. One least-squares problem for all variables
-    separates their effects, even for few designs. Empty bins have effect 0.
+    `bins` contains the bin numbers (n,) of the designs for each variable. One least-squares problem for all variables separates their
+    effects, even for few designs. Empty bins have effect 0.
 
     >>> bins = [np.array([0, 0, 0, 1]), np.array([0, 0, 1, 1])]
     >>> [each[1] - each[0] for each in single_effects(bins, np.array([[1.0], [1.0], [3.0], [3.0]]))][0].round(9).tolist()

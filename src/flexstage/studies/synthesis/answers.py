@@ -76,8 +76,8 @@ def design(  # noqa: PLR0913 (its options)
     First, pairs that cannot meet a bound are excluded (`flexstage.studies.synthesis.bounds`). The other pairs are optimised within the
     requirements by `studies.optimise`. As long as a design misses a requirement with elastic bodies or at large displacements, limits are
     corrected and optimisation is repeated. For the first three answers, `verify` (such as `solid.required_values`) repeats the search with
-    finite elements. `tolerance` computes their yield, and `close_loop` (such as `control.sensitivity_crossover`) the sensitivity crossover
-    of their control loop. If `architectures` is empty, all are used.
+    finite elements, `tolerance` computes the yield, and `close_loop` (such as `control.sensitivity_crossover`) computes the sensitivity
+    crossover of the control loop. If `architectures` is empty, all are used.
 
     `finished` receives the result of each pair as soon as it is known, and again after each change.
 

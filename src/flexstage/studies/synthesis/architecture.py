@@ -113,7 +113,7 @@ def architectures() -> dict[str, Architecture]:
 
 @dataclass(frozen=True, eq=False)
 class CatalogueActuator:
-    """An actuator of the catalogue: its entry's `name`, its `part`, and the section's `kind`."""
+    """An actuator of the catalogue: the `name` of its entry, the `kind` of its section, and its `part`."""
 
     name: str
     kind: str

@@ -61,7 +61,7 @@ def displacement_factor(energy: float, displacements: Mapping[str, float], masse
 
 
 def required_energy(displacements: Mapping[str, float], masses: Mapping[str, float], frequency: float) -> float:
-    """Return the smallest energy U [J] with which actuators can reach a first natural frequency [Hz].
+    """Return the smallest stroke energy U [J] of actuators that allows this first natural frequency [Hz].
 
     >>> round(required_energy({"x": 0.5e-3}, {"x": 1.0}, 500.0), 2)
     2.47
@@ -114,7 +114,7 @@ def leaf_length(thickness: float, displacement: float, young: float, poisson: fl
 
 
 def efficiency(frequency: float, energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
-    """Return the fraction (at most 1) of the actuators' stroke energy that a stage with a first natural frequency [Hz] uses.
+    """Return the fraction (at most 1) of the actuators' stroke energy that a stage with this first natural frequency [Hz] uses.
 
     >>> round(efficiency(50.0, 2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 3)
     0.282

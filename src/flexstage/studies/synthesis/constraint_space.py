@@ -85,7 +85,7 @@ def has_parallel_guide(twists: Array) -> bool:
 
 
 def serial_guides(motions: frozenset[str]) -> list[tuple[frozenset[str], ...]]:
-    """Return all ways to obtain the motions with the fewest parallel guides in series, beginning with most motions in the first guide.
+    """Return all ways to obtain the motions with the fewest parallel guides in series; ways with more motions in the first guide precede.
 
     >>> [[sorted(each) for each in way] for way in serial_guides(frozenset({"x", "y", "z", "rz"}))]
     [[['rz', 'x', 'y'], ['z']], [['z'], ['rz', 'x', 'y']]]

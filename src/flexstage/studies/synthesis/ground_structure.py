@@ -97,7 +97,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Guide:
-    """A guide: its elements, and the `ratio` of its smallest stiffness along other motions to its largest along the required motions.
+    """A guide: its elements, and the `ratio` of its smallest stiffness along other motions to its largest stiffness along required motions.
 
     `conditioning` is the smallest singular value of the scaled forces of its `actuators` along the required motions.
     """

@@ -40,11 +40,11 @@ class Allowance:
     """Factors on the specified deviations for which each requirement has at least the yield `wanted`, to first order.
 
     `names` are the names of the m entries, `lines` those of the l requirements. `reach` (l,) is the change of a requirement's value towards
-    its limit that the fraction `wanted` of the samples does not exceed; `share` (m, l) is the fraction of the square of `reach` due to each
-    entry. `together` is the factor on all deviations, limited by the requirement `binding`; it is 0 if the nominal design fails. `alone`
-    (m,) are factors on single entries with the others unchanged; the requirements `binds` (m,) limit these factors. `equal` (m,) are
-    simultaneous factors on all entries, for which each entry uses the same fraction of the margin. A factor is infinite if the entry has no
-    effect. `then` is the yield if the changes of all responses in the sample are multiplied by `together`.
+    its limit; the fraction `wanted` of the samples does not exceed this change. `share` (m, l) is the fraction of the square of `reach` due
+    to each entry. `together` is the factor on all deviations, limited by the requirement `binding`; it is 0 if the nominal design fails.
+    `alone` (m,) are factors on single entries with the others unchanged; the requirements `binds` (m,) limit these factors. `equal` (m,)
+    are simultaneous factors on all entries, for which each entry uses the same fraction of the margin. A factor is infinite if the entry
+    has no effect. `then` is the yield if the changes of all responses in the sample are multiplied by `together`.
     """
 
     wanted: Annotated[float, Called("yield")]

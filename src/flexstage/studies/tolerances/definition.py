@@ -27,7 +27,7 @@ _MANY = 64
 
 @dataclass(frozen=True)
 class Copies(Plan):
-    """Plan of a tolerance study: `count` samples with all scatter, then `alone` samples with the scatter of each single entry.
+    """Plan of a tolerance study: `count` samples with all scatter, then, for each entry, `alone` samples with its scatter only.
 
     The samples of single entries are always a Latin hypercube, because they are few. `groups` contains the number of variables of each
     entry.

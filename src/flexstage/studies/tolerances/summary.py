@@ -35,9 +35,9 @@ class Spread:
     `percentiles` (5, r) are the percentiles 1, 5, 50, 95 and 99. `linear` (r,) is the standard deviation by first-order propagation,
     sqrt(sum (dy/dx s)^2), with the sum over all variables x with the standard deviation s. `trusted` (r,) is true if the response is
     smooth, and the standard deviation of the sample agrees with `linear` within 10 % or four standard errors. `by_slope` (m, r) are the
-    fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the variances of samples with
-    scatter of a single entry, divided by the sum of these variances over all entries. `by_slope` and `by_sample` are NaN for a constant
-    response.
+    fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the variances in the samples
+    with the scatter of one entry only, divided by the sum of these variances over all entries. `by_slope` and `by_sample` are NaN for a
+    constant response.
     """
 
     names: tuple[str, ...]
@@ -248,7 +248,7 @@ def _ratio(parts: Array, whole: Array) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
-    """Compute the variances (m, r) of r responses in the samples with scatter of a single entry, or their mean squares about a `centre`.
+    """Compute the variances (m, r) of r responses in the samples with the scatter of one entry only, or mean squares about a `centre`.
 
     If the study has only one entry, the whole sample is used.
     """

@@ -58,7 +58,7 @@ def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Fi
 
 
 def coarse_lines(known: Evidence, poles: Array) -> str | None:
-    """Warn if the line spacing exceeds the width of the narrowest mode; `poles` in Hz.
+    """Warn if the line spacing exceeds the width of the narrowest mode; `poles` are in Hz.
 
     Candidates are poles of responses at frequency lines: a mode closer than one line spacing to another mode may be missed. A line spacing
     equal to the half-power bandwidth B = 2 zeta f requires a record of about n / B seconds for n averages.

@@ -18,7 +18,7 @@ _MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Identified modes: `poles` (k,) in Hz, groups `close` of indices of close modes, and inflation factors `widening` (k,) of intervals.
+    """Identified modes: `poles` (k,) in Hz, indices of `close` modes by group, and inflation factors `widening` (k,) of intervals.
 
     `elsewhere` (k,) is the fraction of each mode's motion that the recorded inputs do not explain.
     """

@@ -70,7 +70,7 @@ def common_delay(found: Identified) -> Delay | None:
 
 
 def late_channels(found: Identified) -> Iterator[str]:
-    """Find single channels whose delay differs from the other inputs or outputs, and yield a warning for each.
+    """Find single inputs or outputs whose delay differs from the delay of the others, and yield a warning for each.
 
     The delay of each channel is estimated from its residues in three modes or more. A channel is reported if its delay differs from the
     median delay by more than 6 standard deviations and by more than a tenth of the highest mode's period. Most channels must agree with

@@ -178,9 +178,9 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
     & De Moor, Subspace Identification for Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855).
 
     The equations are projected onto the signal subspace of the whole record, spanned by the first singular vectors U and R of W H V. A then
-    has the eigenvalues of (U^H W H V R)^-1 U^H W H' V R, where H' is H shifted by one lag. Standard deviations follow from a first-order
-    perturbation of this projection by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band
-    bias low orders, and spurious poles bias high orders: the order is therefore selected for each mode (`_select_order`).
+    has the eigenvalues of (U^H W H V R)^-1 U^H W H' V R, where H' is H shifted by one lag. Standard deviations follow from first-order
+    effects of the covariances of independent blocks on this projection (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band bias
+    low orders, and spurious poles bias high orders: the order is therefore selected for each mode (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)

@@ -63,7 +63,7 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
     """Minimise t + d^T B d / 2 + penalty s over all design changes d within the radius and the ranges; B is the `hessian`.
 
     To first order, t is an upper bound of the objective's increase, and s >= 0 is an upper bound of the violation of every limit. Sides of
-    frequencies are matrices. Eigenvectors of the changed matrices are added as planes until no eigenvalue exceeds the bound set by t
+    frequencies are matrices. Eigenvectors of the changed matrices define additional planes until no eigenvalue exceeds the bound set by t
     (objective) or s (limits). This method of planes is exact even for crossing modes. If a design was `tried`, the planes are shifted so
     that they match its values (second-order correction). Without such shifts, the steps along curved limits would be short.
 

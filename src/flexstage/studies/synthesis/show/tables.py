@@ -51,7 +51,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
 
 
 def pair_row(result: Answer | FailedPair) -> dict[str, str]:
-    """Return texts for a pair: its names, its goal or the reason for its failure, and file and design of its answer.
+    """Return texts on a pair: its names, its goal (or the reason for its failure), and the file and design of its answer.
 
     >>> pair_row(FailedPair("guide", "stack", 0.12, {"frequency.1": "at least 1 kHz"}))["reason"]
     'frequency.1 at least 1 kHz, missed by 12 %'
