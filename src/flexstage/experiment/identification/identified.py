@@ -64,14 +64,14 @@ class Identified(InNotebook):
 
     `frequencies` (k,) [Hz] are natural frequencies |pole|/(2 pi), and `damping` (k,) are damping ratios. `shapes` (p, k) are complex, with
     a row for each output and largest component 1; `participation` (k, m) is complex, with a column for each input. At the angular frequency
-    w, the response H is the sum over modes of shape times participation / (j w - pole), plus the same term with conjugate shape,
-    participation and pole. Standard deviations of shapes apply to the real and to the imaginary part. `widening` (k,) is the inflation
-    factor of all standard deviations, above 1 if the residual near the mode exceeds noise or may contain a further mode. `significance`
-    (k,) is the mode's chi-squared statistic, divided by the level that noise exceeds with a probability of 1e-9. `close` lists groups of
-    modes closer than their half-widths: only the subspace of such a group can be compared, not its single modes. `noise` (p,) is the noise
-    density of the outputs, in the output's unit squared per Hz. `data_warnings` lists limits of the data. `peaks` are peaks not confirmed
-    as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, this H is multiplied by e^{-j
-    w delay}.
+    w, the response H is the sum of two terms for each mode: shape times participation / (j w - pole), and the same term with conjugate
+    shape, participation and pole. Standard deviations of shapes apply to the real and to the imaginary part. `widening` (k,) is the
+    inflation factor of all standard deviations, above 1 if the residual near the mode exceeds noise or may contain a further mode.
+    `significance` (k,) is the mode's chi-squared statistic, divided by the level that noise exceeds with a probability of 1e-9. `close`
+    lists groups of modes closer than their half-widths: only the subspace of such a group can be compared, not its single modes. `noise`
+    (p,) is the noise density of the outputs, in the output's unit squared per Hz. `data_warnings` lists limits of the data. `peaks` are
+    peaks not confirmed as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, this H is
+    multiplied by e^{-j w delay}.
     """
 
     frequencies: Array

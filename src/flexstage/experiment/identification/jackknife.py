@@ -17,8 +17,8 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
     """Compute standard deviations (k,) in Hz of real and imaginary parts of poles, by omitting one group of cells at a time.
 
     `groups` (c,) are the group numbers of the cells, from 0 to G - 1. Without group g, a pole changes by d_g. The variance sigma^2 is (1 -
-    1/G)/2 times the sum of |d_g|^2 over the groups. The changes d_g are Newton steps -(I - I_g)^-1 s_g: I is the Fisher information of all
-    cells, I_g and s_g are the contributions of group g to the information and to the gradient of the log-likelihood (Tukey 1958; CR3 of
+    1/G)/2 times the sum of |d_g|^2 over the groups. The changes d_g are Newton steps -(I - I_g)^-1 s_g with the Fisher information I of all
+    cells. I_g and s_g are the contributions of group g to the information and to the gradient of the log-likelihood (Tukey 1958; CR3 of
     Bell & McCaffrey 2002).
 
     Errors of different groups must be independent; errors within a group may be correlated. An error common to all groups is not detected.

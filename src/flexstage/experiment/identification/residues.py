@@ -10,8 +10,8 @@ from flexstage.base.number import Array
 def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Array) -> Array:
     """Compute the responses H (f, p, m) of modes at frequencies in Hz, with poles (k,) in rad/s.
 
-    At the angular frequency w, H is the sum over modes of shape (p, k) times participation (k, m) / (j w - pole), plus the same term with
-    conjugate shape, participation and pole (Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1).
+    At the angular frequency w, H is the sum of two terms for each mode: shape (p, k) times participation (k, m) / (j w - pole), and the
+    same term with conjugate shape, participation and pole (Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1).
 
     >>> one = modal_sum(np.array([0.0]), np.array([-1.0 + 10j]), np.array([[1.0]]), np.array([[-0.5j]]))
     >>> round(one.item().real, 6)

@@ -78,7 +78,7 @@ class Cells:
 def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
     """Compute Fourier transforms of a record's blocks, Y(f_k) = N^-1/2 sum over n of y_n exp(-2 pi j k n/N).
 
-    y_n are the N samples of a channel in a block, minus their mean. The record is divided into `least` blocks, or into more blocks if
+    Here y_n are the N samples of a channel in a block, minus their mean. The record is divided into `least` blocks, or into more blocks if
     memory requires them. `inputs` are the column indices of the record's inputs in the drive. The transient of the first block has the
     column index `first`, the transient of the next block `first` + 1, and so on.
 

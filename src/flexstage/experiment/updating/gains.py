@@ -54,7 +54,7 @@ class Gains:
 def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identified, outputs: tuple[str, ...]) -> Gains:
     """Estimate the gains from recorded inputs (actuators of the stage) to the outputs named `outputs`.
 
-    With x = f/f_1, the frequency relative to the lowest mode, the function a + (b x^2 + c x^4)/(1 - x^2) is fitted by least squares to the
+    Let x = f/f_1 be the frequency relative to the lowest mode. The function a + (b x^2 + c x^4)/(1 - x^2) is fitted by least squares to the
     real part of the responses (estimator H1) up to x = 0.35. The constant a is the gain; b and c are the other two coefficients. The fitted
     function represents the lowest mode, at f_1, exactly. Even powers approximate higher modes, lags and the amplifier's bandwidth. An input
     in volts is converted to free stroke with the stroke and voltage range of its stack. Raises `DesignError` without an actuator input, for

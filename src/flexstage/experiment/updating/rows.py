@@ -118,8 +118,8 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
 def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
     """Compute the exact derivatives d ln f / d p (rows, P) of each row's frequency f with respect to the parameters p.
 
-    The derivative is the sum of phi^T (dK - lambda dM) phi over the row's modes, divided by twice the sum of their eigenvalues lambda. phi
-    are the mode shapes, dK and dM the derivatives of the stiffness and mass matrices.
+    The derivative is the sum of phi^T (dK - lambda dM) phi over the row's modes, divided by twice the sum of their eigenvalues lambda. Here
+    phi are the mode shapes, dK and dM the derivatives of the stiffness and mass matrices.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))

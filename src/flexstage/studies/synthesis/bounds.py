@@ -24,8 +24,8 @@ def stiffness_bound(energy: float, displacement: float, negative_stiffness: floa
     """Return the largest stiffness K [N/m, N m/rad] along a motion of +-X that is driven by actuators with imposed stroke.
 
     The bound is K X^2 <= U (1 + N/K) with the stroke energy U; N >= 0 is the negative part of the passive stiffness along the motion.
-    Proof: with the ratios G of strokes to displacements and the stiffnesses k of the actuators, the stiffness is K = G'kG + P, with a
-    passive part P >= -N (' is the transpose). Strokes u displace the stage by x: K x = G'k u. Hence x'Kx = (k^1/2 G x)'(k^1/2 u) is at most
+    Proof: the stiffness is K = G'kG + P, with the ratios G of strokes to displacements, the stiffnesses k of the actuators and a passive
+    part P >= -N (' is the transpose). Strokes u displace the stage by x: K x = G'k u. Hence x'Kx = (k^1/2 G x)'(k^1/2 u) is at most
     (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The largest K is the positive root of K^2 = (U/X^2) (K + N).
 
     >>> round(stiffness_bound(0.025, 1e-3))

@@ -48,8 +48,8 @@ class Distribution:
     def deviation(self) -> float:
         """Standard deviation, also of a truncated normal distribution.
 
-        With sigma = `size` and a = `within` / sigma, the truncated distribution has sigma sqrt(1 - 2 a phi(a) / (2 Phi(a) - 1)), where phi
-        and Phi are the density and the cumulative distribution of the standard normal distribution.
+        With sigma = `size` and a = `within` / sigma, the standard deviation after truncation is sigma sqrt(1 - 2 a phi(a) / (2 Phi(a) -
+        1)). Here phi and Phi are the density and the cumulative distribution of the standard normal distribution.
 
         >>> round(Distribution(Shape.NORMAL, 1.0, within=1.0).deviation, 4), Distribution(Shape.UNIFORM, 3.0**0.5).deviation
         (0.5396, 1.0)

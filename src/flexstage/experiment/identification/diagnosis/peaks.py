@@ -51,8 +51,9 @@ class Peak:
     """Peak at `frequency` in Hz, with a half-power `width` in Hz; the width is absent if it is at most one line.
 
     `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
-    peak without a mode: for a tone, that noise is as pure; for a weak or narrow peak, that noise is as strong; for an undriven peak, that
-    inputs explain as much motion by chance. For an accepted mode, the probability is at most 1e-9, and the width exceeds the line spacing.
+    peak without a mode. For a tone, it is the probability that noise is as pure; for a weak or narrow peak, that noise is as strong; for an
+    undriven peak, that inputs explain as much motion by chance. For an accepted mode, the probability is at most 1e-9, and the width
+    exceeds the line spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -24,9 +24,9 @@ def quadratic(hessian: Array, linear: Array, normals: Array, bounds: Array) -> S
     """Minimise x^T H x / 2 + h^T x subject to A x <= b.
 
     The `hessian` H is positive definite, h is `linear`, and A (`normals`) and b (`bounds`) are the constraints, which must be feasible. In
-    the coordinates y = L^T x with H = L L^T, the constraints for a step z from the unconstrained minimiser are G z >= g, and the solution
-    is the shortest such step. This step follows from a non-negative least-squares problem: min |E u - e| over u >= 0 with E = [G^T; g^T]
-    and e = (0, ..., 0, 1), then z = G^T u / (1 - g^T u) (Lawson & Hanson, Solving Least Squares Problems, 1974, chapter 23).
+    the coordinates y = L^T x with H = L L^T, a step z from the unconstrained minimiser must satisfy constraints G z >= g. The solution is
+    the shortest such step. It is z = G^T u / (1 - g^T u), where u >= 0 minimises |E u - e| with E = [G^T; g^T] and e = (0, ..., 0, 1)
+    (Lawson & Hanson, Solving Least Squares Problems, 1974, chapter 23).
 
     >>> found = quadratic(np.eye(2), np.array([-2.0, -1.0]), np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([1.0, 5.0]))
     >>> found.at.round(12).tolist(), found.multipliers.round(12).tolist()
