@@ -82,10 +82,10 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 def mirrors_of(component: Component) -> Mirrors:
     """Return the planes normal to y and z about which a component of one medium is symmetric and can be cut.
 
-    Every joint, link and body must be its own mirror image. Leaves are cut only if they are thin, and only across their width: other cuts
-    would make their flat elements even flatter, or leave fewer elements across the leaf. Stacks, rods, cylinders (except round plates),
-    spheres and round holes are not cut. The mesher sets the element size by curvature and divides arcs less finely than circles; cut round
-    pieces would lose mass.
+    Each joint, link and body must itself be symmetric about the plane. Leaves are cut only if they are thin, and only across their width:
+    other cuts would make their flat elements even flatter, or leave fewer elements across the leaf. Stacks, rods, cylinders (except round
+    plates), spheres and round holes are not cut. The mesher divides an arc less finely than a full circle; a round piece would therefore
+    lose mass if it were cut.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> mirrors_of(bar())

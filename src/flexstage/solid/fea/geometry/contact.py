@@ -35,9 +35,9 @@ def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Find
     """Return the errors that prevent the outlines of a stage from forming the described solids; empty for a sound stage.
 
     If a link has a shape, each of its end faces must be entirely on the outline of the body that it joins. Bodies without outlines are not
-    checked. The outline of the ground is checked only if it is drawn in the unit of the link. Outlines of one body must form one solid,
-    joined over faces. All other outlines must be farther apart than `clearance` [m]; contact, within 1 um, is an error. No step, gap, edge
-    or face may be much smaller than the local geometry.
+    checked. Outlines of the ground are checked only for links in the same unit. Outlines of one body must form one solid, joined over
+    faces. All other outlines must be farther apart than `clearance` [m]; contact, within 1 um, is an error. No step, gap, edge or face may
+    be much smaller than the local geometry.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())

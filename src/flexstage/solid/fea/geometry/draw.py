@@ -54,7 +54,7 @@ def draw_form(form: Form) -> occ.Solid:
 
 
 def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
-    """Draw a hinge with stubs of lengths `stubs` [m] at its first and second end; elements at the neck are `size` times the thickness.
+    """Draw a hinge with stubs of lengths `stubs` [m] at its ends; the element size at the neck is `size` times the thickness.
 
     The hinge is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
 
@@ -232,7 +232,7 @@ def prism(form: Shaped) -> occ.Solid:
 
 @dataclass(frozen=True)
 class Shape:
-    """Functions that draw a kind of part as a CAD solid [mm]. `draw` draws the part at the origin, `specimen` with stubs at its ends.
+    """Functions that draw a kind of part as a CAD solid [mm]. `draw` draws the part at the origin, `specimen` draws it with stubs.
 
     By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts need `specimen.cut`, which blunts arcs at
     rigid faces: complete arcs would meet these faces at angles that cannot be meshed.

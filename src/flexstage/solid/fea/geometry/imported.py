@@ -27,7 +27,7 @@ TOLERANCE = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class ImportedProperties:
-    """Properties of the solid in a file, in the file's axes: sides `size` and `middle` of the bounding box [m], volume [m^3], centroid [m].
+    """Properties of a solid in its file's axes: `size` (side lengths) and `middle` of the bounding box [m], volume [m^3], centroid [m].
 
     `inertia` (3, 3) is for unit density, about the centroid [m^5]. `sha256` is the digest of the file.
     """

@@ -52,7 +52,10 @@ class Mirrors:
         return (kinds >> self.axes.index(axis)) % 2 == 1
 
     def twist_kinds(self, rotation: Array) -> Array:
-        """Return the kinds (6,) of translations along and rotations about columns of `rotation`, each parallel or normal to the planes."""
+        """Return the kinds (6,) of translations along the columns of `rotation` and of rotations about them.
+
+        Each column is parallel or normal to the planes.
+        """
         translations = self.kinds(np.abs(rotation[list(self.axes)]) > 0.5)
         return np.concatenate([translations, translations ^ (self.copies - 1)])
 
@@ -61,7 +64,7 @@ class Mirrors:
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Compute the products (n, k) of motions on the whole from those on one `side`; it is zero for motions of different kinds."""
+        """Compute products (n, k) of motions over the whole from products over one `side`; they are zero for motions of different kinds."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:

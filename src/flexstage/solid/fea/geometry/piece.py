@@ -41,8 +41,8 @@ class Medium:
     """An elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3].
 
     For a crystal, `tensor` contains the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering shear
-    strains). For a crystal, `young` is the modulus along x, and `poisson` gives the mean shear modulus of the planes xy and xz; only hinge
-    stubs use these two values.
+    strains). `young` is then the modulus along x, and `poisson` is such that `shear` is the mean shear modulus of the planes xy and xz;
+    only hinge stubs use these two values.
     """
 
     young: float

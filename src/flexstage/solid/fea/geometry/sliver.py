@@ -39,7 +39,9 @@ class _Sliver:
 
 
 def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iterator[Finding]:
-    """Yield the slivers of every distinct component, drawn as one solid. Errors of drawing are omitted if `coarse` errors are known.
+    """Yield the slivers of every distinct component, drawn as one solid.
+
+    If other errors are known (`coarse`), errors of drawing are omitted.
 
     >>> list(sliver_findings([]))
     []

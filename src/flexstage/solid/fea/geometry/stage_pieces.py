@@ -18,8 +18,8 @@ from flexstage.solid.fea.solver.component import Joint, link_joints
 class Stage:
     """The pieces of a stage by address, in the axes of the stage; pieces of the ground have the `body` "ground".
 
-    `boxes` are the outlines of the pieces, `joints` the two ends of every link, `materials` the name of each piece's material (for a stack,
-    of its part).
+    `boxes` contains the outlines of the pieces, `joints` the two ends of every link, `materials` the name of each piece's material. For a
+    stack, this is the name of its part.
     """
 
     assembly: Assembly

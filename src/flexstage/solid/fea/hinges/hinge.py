@@ -136,13 +136,13 @@ def hinge_compliance(
     compliances of the stubs about the hinge's centre are subtracted. First the order is raised, then the mesh is refined, until the error
     estimated from the last changes (`estimate.remaining`) is within `accuracy.error`.
 
-    `roots` selects the ends that are on blocks (default: both ends of a profile that `rises`, else no end). `stub` [m] is the length of a
-    stub. The default of `stub` is the hinge's full height, or five times the length scale `grain` of the hinge if the block is wider than
-    the hinge.
+    `roots` selects the ends that are attached to blocks; by default, these are both ends if the profile `rises`, otherwise none. `stub` [m]
+    is the length of a stub. By default, it is the height of the hinge's end if the profile `rises`, otherwise five times the hinge's length
+    scale `grain`.
 
-    The stub's length is a convention; it changes the compliance along x by 1 to 3 %, along y by about 10 %, and about x by a large factor
-    if the hinge is several times wider than high. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made.
-    The functions in `told` report every mesh and solution.
+    The stub's length is a convention. It changes the compliance along x by 1 to 3 % and along y by about 10 %; if the hinge is several
+    times wider than high, it changes the compliance about x by a large factor. Raises `DesignError` for a part without a shape, for a
+    batch, and if no mesh can be made. The functions in `told` report every mesh and solution.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight

@@ -29,9 +29,9 @@ class HingeSolid:
 
     `compliance` and `stiffness` (6, 6) are for the twist (x, y, z, rx, ry, rz) of the second end relative to the first. `error` estimates
     the largest relative error of the compliance *at the hinge's end*, where the error of each entry ij is divided by sqrt(C_ii C_jj).
-    `changes` (6,) are the last relative changes of the compliance's diagonal about the centre. The entries of y and z change more, because
-    they are differences of lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`,
-    `elements` and `order` are those of the last solution; `finding` is a warning if the required accuracy was not reached.
+    `changes` (6,) are the last relative changes of the compliance's diagonal about the centre. The entries for y and z change more than the
+    others, because they are differences of lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m].
+    `freedoms`, `elements` and `order` are those of the last solution; `finding` is a warning if the required accuracy was not reached.
     """
 
     compliance: Array

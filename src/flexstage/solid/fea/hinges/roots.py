@@ -13,14 +13,14 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Roots:
-    """Whether the `first` end of a hinge (at -x of its frame) and the `second` end are on elastic blocks; an end on no block is rigid."""
+    """Whether the `first` end of a hinge (at -x of its frame) and the `second` end are on elastic blocks; other ends are rigid."""
 
     first: bool
     second: bool
 
     @property
     def mirrored(self) -> Roots:
-        """The roots of the hinge with exchanged ends.
+        """The roots after an exchange of the hinge's two ends.
 
         >>> Roots(True, False).mirrored
         Roots(first=False, second=True)
@@ -29,7 +29,7 @@ class Roots:
 
 
 def own_roots(part: Shaped) -> Roots:
-    """Return the roots of an isolated hinge. A profile that `rises` is between blocks of its own height, other shapes between rigid faces.
+    """Return the roots of an isolated hinge. If its profile `rises`, both ends are on blocks; otherwise both are on rigid faces.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))

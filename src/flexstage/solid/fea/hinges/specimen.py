@@ -48,7 +48,7 @@ _Curve = list[occ.TopoDS_Shape]
 
 @dataclass(frozen=True)
 class Specimen:
-    """A drawn hinge with stubs [mm]: the `solid` with faces `start` and `end` and element sizes on edges; the `largest` element size."""
+    """A drawn hinge with stubs [mm]: `solid` has the faces `start` and `end` and element sizes on edges; `largest` is the largest size."""
 
     solid: occ.TopoDS_Shape
     largest: float
@@ -101,7 +101,7 @@ class _Side:
 
 
 def grain(part: Shaped) -> float:
-    """Return the length scale of the root's compliance [m]: the end's thickness, or sqrt(thickness x width) if the hinge bends both ways.
+    """Return a length scale of the hinge's end [m]: the thickness, or sqrt(thickness x width) if the hinge bends both ways.
 
     >>> from flexstage.parts.neck import Neck
     >>> grain(Neck("steel", 1e-3, Straight(0.01), width=4e-3))
@@ -112,7 +112,7 @@ def grain(part: Shaped) -> float:
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
-    """Return section and length [m] of the stub at a hinge's end: the end's section if the profile `rises`, else wider on all sides.
+    """Return section and length [m] of a hinge's stub: its section is that of the end if the profile `rises`, else larger on all sides.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -128,7 +128,7 @@ def own_stub(part: Shaped) -> tuple[Section, float]:
 
 
 def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
-    """Draw a hinge that has a profile, and stubs with the lengths `stubs` [mm]. Arcs next to a stub are complete.
+    """Draw a hinge with a profile, and its stubs of lengths `stubs` [mm]. Arcs next to a stub are complete, other arcs are blunted.
 
     A straight profile is drawn as a `bar`. A notch is thin along y and wide along z; a round neck is revolved about x.
     """

@@ -60,7 +60,7 @@ def contacts_apart(
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
-    """Compute the result of `step` in a separate process. Raises `DesignError` if this crashes or takes too long."""
+    """Compute the result of `step` in a separate process. Raises `DesignError` if the process crashes or takes too long."""
     return _results_of([_Drawing(mechanism)], limits)[0]
 
 

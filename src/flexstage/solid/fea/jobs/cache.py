@@ -83,7 +83,7 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
 
 
 def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
-    """Return the superelement or hinge stored for a key, or `None`. Warnings about a damaged file name the component or hinge `where`.
+    """Return the superelement or hinge stored for a key, or `None`. `where` is the name of the component or hinge in warnings.
 
     >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True

@@ -35,7 +35,7 @@ _COARSER, _COARSEST = 1.25, 12.0
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of vertices, edges, faces and elements of a tetrahedral mesh; the whole component is `sides` mirror images of the mesh."""
+    """Numbers of vertices, edges, faces and elements of a tetrahedral mesh; the whole component consists of `sides` mirror images of it."""
 
     vertices: float
     edges: float
@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Return counts with which `freedoms` at `order` gives the DOFs of a mesh with a fraction `share` of elements of one order more.
+        """Scale the counts so that `freedoms` at `order` counts the DOFs of a mesh with a fraction `share` of elements one order higher.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0
@@ -116,7 +116,7 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 
 @dataclass(frozen=True)
 class ReductionWork:
-    """Computing effort of a reduction: counts of its mesh, unknowns, operations of its factorisations, and the pace of the machine.
+    """Computing effort of a reduction: mesh counts, number of unknowns, number of operations for factorisation, and the machine's pace.
 
     `pace` is the time of a small factorisation, divided by its usual time.
     """

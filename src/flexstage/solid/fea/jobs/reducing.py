@@ -91,7 +91,7 @@ class ComponentJob(StoredJob):
 
     @property
     def kin(self) -> str:
-        """The digest of the component's content; jobs of different orders have the same mesh."""
+        """The digest of the component's content, because jobs of different orders use the same mesh."""
         return content(self.component)
 
 
@@ -138,7 +138,7 @@ class Reduce(ComponentJob):
         return needed(counts, self.reduction.fineness.order, self.columns)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Return an error if the job needs more memory than `limit`; the error names an order or fineness that fits, and a thin part."""
+        """Return an error if the job needs more memory than `limit`, with an order or fineness that fits and a leaf or notch to change."""
         found = refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
         forms = ((piece.name, piece.form) for piece in self.component.pieces if is_leaf(piece.form) or is_notch(piece.form))
         wide = {name: form.throat for name, form in forms if isinstance(form, Shaped)}

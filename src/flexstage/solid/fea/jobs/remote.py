@@ -32,7 +32,7 @@ _TELL_EVERY = 0.5
 class Limits:
     """Limits of the resources of jobs.
 
-    `memory` [bytes] limits all jobs together (default: the free memory), `seconds` each job, and `mesh_seconds` each attempt at a mesh.
+    `memory` [bytes] limits all jobs together (default: the free memory), `seconds` limits each job, `mesh_seconds` each attempt at a mesh.
     `workers` is the number of simultaneous jobs (default: one for each core, at most two).
     """
 

@@ -42,7 +42,7 @@ def program() -> str:
 
 
 def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
-    """Return the bytes of a file that stores a superelement, a hinge, or only the `key` of its content.
+    """Return the bytes of a file that stores a superelement or a hinge with its `key`, or only the key (`None`).
 
     >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
     >>> from_bytes(to_bytes(small, "key"), "key").freedoms

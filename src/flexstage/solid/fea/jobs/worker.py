@@ -24,9 +24,9 @@ _PATIENCE = 60.0
 
 @dataclass(frozen=True, eq=False)
 class Call:
-    """Environment of a job: functions for progress and memory, and the number of the first attempt at a mesh.
+    """Environment of a job: the functions `report` for progress and `ask` for memory, and the number of the first `attempt` at a mesh.
 
-    `ask` waits until the memory for a mesh with certain counts is available.
+    `ask` waits until enough memory for a mesh with these counts is available.
     """
 
     report: Report = silent
@@ -52,7 +52,7 @@ class Job(ABC):
 
     @property
     def kin(self) -> str:
-        """Common key of similar jobs, if a process does a job faster after a similar job; empty otherwise."""
+        """Key shared by similar jobs, which one process completes faster in succession; empty without similar jobs."""
         return ""
 
     def seconds(self) -> float:
@@ -73,7 +73,7 @@ class Job(ABC):
 
 
 def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> Any:
-    """Run a job with limits of memory [bytes] and time [s]. Report its stages and the counts of meshes; wait for the memory of each mesh.
+    """Run a job with limits of memory [bytes] and time [s]. Report its stages and mesh counts, and wait for memory for each mesh.
 
     Raises a `DesignError` with the remedy if the solver does not load.
     """

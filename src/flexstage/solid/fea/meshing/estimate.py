@@ -31,7 +31,7 @@ class Accuracy(CheckedFields):
 
 
 def change(first: Array, second: Array) -> float:
-    """Compute the largest relative change between two compliances (6, 6): that of entry ij is divided by sqrt(C_ii C_jj) of the second.
+    """Compute the largest relative change of a compliance C (6, 6); the change of entry ij is divided by sqrt(C_ii C_jj) of the second C.
 
     >>> change(np.diag([1.0, 2.0]), np.diag([1.0, 2.02])).__round__(4)
     0.0099

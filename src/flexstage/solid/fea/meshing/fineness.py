@@ -53,7 +53,7 @@ class Fineness(CheckedFields):
 
 
 class Hold(Enum):
-    """Motion of interface faces between elastic bodies: a twist with linear and quadratic warps, or free with a prescribed mean twist."""
+    """How faces between elastic bodies may move: by a twist plus linear and quadratic warps, or freely with a prescribed mean twist."""
 
     RIGID = "rigid"
     AVERAGED = "averaged"
@@ -61,11 +61,11 @@ class Hold(Enum):
 
 @dataclass(frozen=True)
 class Reduction(CheckedFields):
-    """Options of a component's reduction: mesh and order, number of fixed-interface modes, constraint of its interface faces.
+    """Options of a component's reduction: mesh and element order, number of fixed-interface modes, constraint of its interface faces.
 
-    With `residual`, the basis includes static responses, with faces fixed, to the inertia forces of the faces' motions. These responses
-    replace the omitted modes to first order in frequency squared. Components whose content is in `raised` have elements of one order more
-    than the others. With `static`, the `raised` components have no modes, because static results do not need them.
+    With `residual`, the basis includes the static responses, computed with fixed faces, to the inertia forces of the faces' motions. These
+    responses replace the omitted modes to first order in frequency squared. Components whose content digest is in `raised` have elements
+    one order higher than the others. With `static`, the `raised` components have no modes, because static results do not need them.
     """
 
     fineness: Fineness = Fineness()
@@ -76,7 +76,7 @@ class Reduction(CheckedFields):
     static: bool = False
 
     def of(self, content: str) -> Reduction:
-        """Return the options of the component with this `content`.
+        """Return the options of the component with the digest `content`.
 
         >>> own = Reduction(raised=frozenset({"lever"}), static=True).of("lever")
         >>> own.fineness.order, own.modes
@@ -98,7 +98,7 @@ def is_leaf(form: object) -> bool:
 
 
 def is_notch(form: object) -> bool:
-    """Return whether a form is a hinge with arcs that is not axisymmetric: the strain in it varies smoothly.
+    """Return whether a form is a hinge with arcs that is neither axisymmetric nor slender; the strain in it varies smoothly.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_notch(Leaf("steel", 0.01, 1e-3, 5e-3))

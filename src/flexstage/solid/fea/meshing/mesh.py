@@ -66,7 +66,8 @@ class PieceMesh:
     """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) of each element.
 
     The mask `finer` selects elements in notches and thin leaves, which have one order more than the others. If the mesh is the positive
-    side of a component with `mirrors`, `images` (copies - 1, elements) has the piece to which each mirror image of an element belongs.
+    side of a component with `mirrors`, `images` (copies - 1, elements) contains the piece (index) to which each mirror image of an element
+    belongs.
     """
 
     mesh: ngsolve.Mesh
@@ -81,12 +82,12 @@ class PieceMesh:
 def mesh_component(
     component: Component, fineness: Fineness, report: Report = silent, first: int = 0, *, by_symmetry: bool = False
 ) -> PieceMesh:
-    """Draw and mesh a component; `by_symmetry`: only the positive side of a symmetric component.
+    """Draw and mesh a component; with `by_symmetry`, only the positive side of a symmetric component.
 
     Elements near the ends of arcs get straight sides if curving would invert them. If the mesher fails, or an element of a neck is
     inverted, a few other sizes and gradings are tried. `first` is the number of the attempt to start with, after a crash of earlier
-    attempts. Drawings and meshes are cached; for another order, the mesh is only curved again. Raises `DesignError` if meshing fails in all
-    attempts.
+    attempts. Drawings and meshes are cached; another order only requires curving the cached mesh again. Raises `DesignError` if meshing
+    fails in all attempts.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -322,7 +323,7 @@ def centroids(mesh: ngsolve.Mesh) -> Array:
 
 
 def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
-    """Return for each point the piece (index) with the nearest bounding box. At equal distance, links precede bodies.
+    """Return for each point the piece (index) with the nearest bounding box. At equal distance, a link has priority over a body.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()

@@ -20,8 +20,8 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
     """Give folded elements of a curved mesh straight sides. Return `None`, or the reason if straightening fails.
 
     Elements of `kept` (mask) keep their curved sides; if one of them is inverted, the reason contains the lowest Jacobian determinant. If
-    an element was folded, the mesh then has order one, and the remaining curved shape is a deformation; call `UnsetDeformation` before
-    curving the mesh again.
+    an element was folded, the mesh is reset to order one, and a deformation represents the remaining curvature; call `UnsetDeformation`
+    before you curve the mesh again.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -49,7 +49,7 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
 
 
 def jacobians(mesh: ngsolve.Mesh) -> tuple[Array, Array]:
-    """Compute the lowest and the highest Jacobian determinants (n,) of n elements at the points of a rule of order four.
+    """Compute the lowest and the highest Jacobian determinants (n,) of n elements at the points of a quadrature rule of order four.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
