@@ -70,7 +70,7 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance is separable from that of the stubs: at least 10 % of the compliance including the stubs.
+        """Whether each direct compliance is separable: it is at least 10 % of the compliance of hinge and stubs together.
 
         The solid contains stubs (pieces of the blocks) next to the hinge. The compliance of the stubs, as beams with restrained warping
         (Vlasov), is subtracted. In torsion, a wide notch is stiffer than its stubs; the result is then a small difference of two large

@@ -37,8 +37,8 @@ class Plan:
 def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hinges: Accuracy | None = None) -> Plan:
     """Return the jobs that `verify` needs in any case: hinges, the stage and its isolated units at two orders.
 
-    `of_hinges` is the accuracy of hinges (default: from `asked`). Outlines are checked. Raises `DesignError` if the stage cannot be
-    modelled as a solid or has no hinge.
+    `of_hinges` is the required accuracy of hinges; by default, it follows from `asked`. Outlines are checked. Raises `DesignError` if the
+    stage cannot be modelled as a solid or has no hinge.
     """
     shape, alone = with_drawn_parts(mechanism), units_alone(mechanism)
     check_together([shape, *alone], ways.cache, ways.pool)
@@ -59,7 +59,7 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
 
 def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *, bare: bool = False) -> Plan:
-    """Return the jobs that `solid` needs for stages as drawn: reductions of all components at two orders, without modes if `bare`.
+    """Return the jobs that `solid` needs for stages as drawn: reductions of all components at two orders; with `bare`, without modes.
 
     Outlines are checked. Raises `DesignError` if a stage cannot be modelled as a solid.
     """

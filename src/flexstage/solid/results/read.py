@@ -28,7 +28,7 @@ STANDARD_WAYS = Ways()
 
 @dataclass(frozen=True, eq=False)
 class SolidRead:
-    """Solid model of a stage: its linear model, and the placed components with the operators of their displacement fields."""
+    """Solid model of a stage: its linear model, and the placed components with operators from the model's coordinates to their own."""
 
     mechanism: Mechanism
     model: LinearModel

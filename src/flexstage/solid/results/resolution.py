@@ -177,7 +177,7 @@ def reduction_of_order(order: int) -> Reduction:
 
 
 def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
-    """Estimate the relative errors of figures `after` at an `order` from the figures `before` at the next lower order.
+    """Estimate the relative errors of the figures `after`, computed at this `order`, from the figures `before` of the next lower order.
 
     At order two, a figure that differs from order one by more than half has no estimate.
 

@@ -34,7 +34,7 @@ _STEPS = 5
 
 @dataclass(frozen=True, eq=False)
 class SolidUnit(UnitOutput, InNotebook):
-    """Results of one isolated unit by the linear solid model, with its output guided along `direction`, without load.
+    """Results of one isolated unit by the linear solid model without load; the unit's output is guided along `direction`.
 
     `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the stress at every link at the full stroke.
     For pictures, `motion` (N,) are the coordinates of the unit's model `read` at the full stroke.

@@ -69,9 +69,9 @@ class Row:
 
     `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the axial-spring model of Shin &
     Moon, if this model applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is
-    the estimated relative error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the MAC of
-    paired modes. Unknown values are `None`, and `reason` explains them. If `calibration` is empty, a verdict requires `theory` and
-    `fea_error`.
+    the estimated relative error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the modal
+    assurance criterion (MAC) of paired modes. Unknown values are `None`, and `reason` explains them. If `calibration` is empty, a verdict
+    requires `theory` and `fea_error`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -252,10 +252,10 @@ def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: S
 def units_solid(
     mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, *, bare: bool = False
 ) -> Converged[dict[str, SolidUnit]]:
-    """Compute every distinct isolated unit as a solid, to the accuracy required by `asked`. The keys of the errors are `unit: figure`.
+    """Compute every distinct isolated unit as a solid, to the accuracy required by `asked`.
 
-    Components are reduced with modes, so that the same components of the stage need no further computation. With `bare`, components are
-    reduced without modes, which does not change static figures.
+    Keys of the errors have the form `unit: figure`. Components are reduced with modes, so that the same components of the stage need no
+    further computation. With `bare`, components are reduced without modes, which does not change static figures.
     """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
@@ -296,7 +296,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 
 
 def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
-    """Compute isolated units by theory with compliance matrices of hinges from FEA, for the hinges' ends in the isolated unit.
+    """Compute isolated units by theory, with hinge compliances from FEA. Each hinge has the ends that it has in the isolated unit.
 
     If the output of the isolated unit has no outlines, the end of the hinge at the output is rigid.
     """

@@ -25,8 +25,8 @@ def solid_report(
 ) -> str:
     """Return sections of the solid model as an HTML page: headline, stage, first section, warnings, other sections.
 
-    `warnings` about the result precede the warnings about the description. Sections that are `None` are left out. `more` are motions of the
-    viewer in addition to the motions of theory.
+    `warnings` about the result precede the warnings about the description. Sections that are `None` are left out. `more` contains motions
+    that the viewer shows in addition to those of theory.
 
     >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
     '<!doctype html>'

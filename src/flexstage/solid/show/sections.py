@@ -123,13 +123,13 @@ def _stress_picture(stage: SolidStage) -> Picture:
 
 
 def verification_headline(found: Verification) -> Headline:
-    """Make the headline of a verification; it is good if theory suffices for all figures of the stage, the last group."""
+    """Make the headline of a verification; `good` is true if theory suffices for all figures of the stage (the last group)."""
     rows = list(found.groups.values())[-1]
     return Headline(found.headline, all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """Convert the platform's finite-element modes to motions of a viewer; remarks describe the paired modes of `theory`, by index."""
+    """Convert the platform's finite-element modes to motions of a viewer; remarks describe the paired modes in `theory`."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 

@@ -23,7 +23,7 @@ _LIGHT = np.array([0.1, 0.4, 0.91])
 
 
 def skin_figure(surfaces: Sequence[Surface], label: str, *, exponent: float = 1.0, side: Side = Side.ISOMETRIC) -> Any:
-    """Draw surfaces from one side as a matplotlib Figure; colours show values from zero to the largest, with their unit in `label`.
+    """Draw surfaces from one side as a matplotlib Figure. Colours show values from zero to the largest; `label` is their unit.
 
     Colours follow the value to the power of `exponent`: with an exponent below one, small values are easier to distinguish.
 

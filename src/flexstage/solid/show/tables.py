@@ -27,7 +27,7 @@ _LISTED = 12
 
 
 def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
-    """Tabulate every distinct hinge: roots at its ends, direct compliances about the centre, one column each, and the estimated error.
+    """Tabulate every distinct hinge: supports of its ends (block or rigid), direct compliances about the centre, and estimated error.
 
     >>> hinge_table({}).texts()[0][:4]
     ['part', 'links', 'ends on', 'x [um/N]']

@@ -104,9 +104,9 @@ def linear_model(
 ) -> LinearModel:
     """Join reduced components to one linear model.
 
-    The coordinates are, in sequence, the twists of rigid bodies and of joints between elastic components (at the joint, in stage axes), the
-    warps of the joints' faces (in the joint's own axes), and the internal coordinates of the components. Raises `DesignError` if the joined
-    stage has a rigid-body motion.
+    The coordinates are, in sequence: the twists of rigid bodies; the twists of joints between elastic components (at the joint, in stage
+    axes); the warps of the joints' faces (in the joint's own axes); the internal coordinates of the components. Raises `DesignError` if the
+    joined stage has a rigid-body motion.
     """
     model = _join(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))

@@ -55,7 +55,7 @@ class Component:
     """One solid in its own axes: `pieces`, the `interfaces` with its neighbours, the joints `fixed` to the ground.
 
     `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is the component's frame in the stage. `seats`
-    are those ends of parts without a shape that are on the component.
+    are the ends of parts without a shape that attach to the component.
     """
 
     name: str
@@ -68,7 +68,7 @@ class Component:
 
     @property
     def floats(self) -> bool:
-        """Whether the component has no joint, and can move as a whole: only parts without a shape support it."""
+        """Whether the component has no joints, so that it can move as a whole; only parts without a shape can support it."""
         return not self.interfaces and not self.fixed
 
 
@@ -126,8 +126,8 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
 def with_yielding_ends(component: Component) -> Component:
     """Return the same component, but with link ends that may deform even on rigid bodies.
 
-    An isolated unit, whose output is rigid, and the unit in its stage, where it ends on an elastic platform, then have equal components. If
-    all warps are zero, the returned component is equal to the original.
+    Then an isolated unit, whose output is rigid, has the same components as the unit in its stage, where its output is an elastic platform.
+    With zero warps, the returned component behaves as the original.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields
@@ -143,7 +143,7 @@ def with_yielding_ends(component: Component) -> Component:
 
 
 def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
-    """Return the two joints of a link: with its first body at the end face towards -x of the link frame, with its second body at +x.
+    """Return the two joints of a link: its end face towards -x of the link frame joins the first body, the other the second body.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> link = next(iter(expand(parallelogram()).links.values()))

@@ -21,7 +21,7 @@ class Contribution:
     """Elastic forces and momenta of a group of elements in k motions, on the group's degrees of freedom `rows` (m,).
 
     `strained` (m, k) are the motions minus their rigid part, and `forces` (m, k) the elastic forces due to these motions. `momenta` (m, k)
-    are those of the complete `motions` (m, k).
+    belong to the complete `motions` (m, k).
     """
 
     name: str

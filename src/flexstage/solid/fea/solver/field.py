@@ -31,7 +31,7 @@ _BELL = 6
 
 @dataclass(frozen=True)
 class Field:
-    """The displacement space of a mesh with some faces fixed, and the coefficients of its media."""
+    """Finite-element space of a mesh's displacements with some faces fixed; elastic constants and density as functions of position."""
 
     meshed: PieceMesh
     space: ngsolve.FESpace
@@ -54,7 +54,7 @@ class Field:
 
     @cached_property
     def members(self) -> tuple[Array, Array]:
-        """All pairs of a basis function and its element: functions (m,) of one component of the space, and ascending elements (m,)."""
+        """All pairs of an element and one of its basis functions, sorted by element: functions (m,) of one component, elements (m,)."""
         scalar, count = self.space.components[0], self.meshed.mesh.ne
         nodes = [np.array(scalar.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)), dtype=np.int64) for number in range(count)]
         return np.concatenate(nodes), np.repeat(np.arange(count), [len(each) for each in nodes])
@@ -71,7 +71,7 @@ class Field:
 
     @cached_property
     def linear(self) -> tuple[Array, Array]:
-        """Coefficients of functions in one component of the space: (n / 3,) of the constant 1, and (n / 3, 3) of x, y and z [m]."""
+        """Coefficients that represent the constant 1 (n / 3,) and x, y and z [m] (n / 3, 3) in the basis of one component."""
         function, place = ngsolve.GridFunction(self.space.components[0]), np.empty((self.size // 3, 3))
         for axis, coordinate in enumerate(_coordinates()):
             function.Set(coordinate, dual=False)
@@ -165,7 +165,7 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
     """Build the elastic form: the integral of stress(u) : strain(v) [N/m] over some elements (mask) or all, for two motions u and v.
 
-    A form that is not assembled is only for `apply_form`.
+    A form that is not assembled can only be used with `apply_form`.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -183,7 +183,7 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """The integral of rho u . v dV [kg] of motions u and v: a sum of `scalar` matrices (n / 3, n / 3) for each component of the motions."""
+    """The integral of rho u . v dV [kg] for motions u and v; the matrix of each component is the sum of `scalar` (n / 3, n / 3)."""
 
     scalar: tuple[Any, ...]
 
@@ -256,7 +256,7 @@ def _apply_by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector
 def stroke_force(space: Field, frame: Frame, length: float) -> Array:
     """Compute the forces (n,) of a unit free stroke: the integrals of C e0 : strain(v) over the volume, for each basis function v.
 
-    C is the elastic tensor. The strain e0 = x x^T / length is along the frame's x axis.
+    C is the elastic tensor; e0 = x x^T / length is a uniform strain along the unit vector x of the frame's x axis.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -324,7 +324,7 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
 
 
 def warp_kinds(mirrors: Mirrors, frame: Frame) -> Array:
-    """Return the kinds (12,) of the motions of `warping_motion`: which are odd across the `mirrors` of a mesh (see `Mirrors`).
+    """Return the kinds (12,) of the motions of `warping_motion`: whether each is odd or even across the `mirrors` (see `Mirrors`).
 
     >>> warp_kinds(Mirrors((1,)), Frame(np.eye(3), np.zeros(3))).tolist()
     [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]
@@ -388,7 +388,9 @@ def nodes_on(space: Field, face: str) -> Array:
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
-    """Compute rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, the motion u, and rigid motions R in a frame.
+    """Compute rows (6, n) that map a motion u to a face's mean twist in a frame.
+
+    The mean twist is G^-1 int R^T u dS with G = int R^T R dS over the face; the columns of R are the six rigid motions.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -412,7 +414,7 @@ def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array
     """Compute rows (6, n) that give the mean twist of the surface `faces` (mask of elements) about a point, in the field's axes.
 
     The mean has the weight exp(-(d^2 - d0^2) / reach^2), where d is the distance from the point and d0 the smallest distance. On a flat
-    face, the weight is a bell around the foot of the perpendicular; on a sphere about the point, it is uniform.
+    face, the weight is a bell curve around the point's perpendicular projection; on a sphere about the point, it is uniform.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -445,7 +447,7 @@ Forms = Sequence[ngsolve.BilinearForm]
 
 
 def times(forms: Forms, vectors: Array) -> Array:
-    """Multiply the sum of the matrices of assembled forms by columns (n, k).
+    """Multiply columns (n, k) by the sum of the matrices of assembled forms.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -507,7 +509,7 @@ Solver = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Motions or forces (n, k) as columns, and their `kinds` (k,) about the mesh's mirrors."""
+    """Motions or forces (n, k) as columns, and the symmetry `kinds` (k,) of the columns (see `Mirrors`)."""
 
     values: Array
     kinds: Array
@@ -540,7 +542,7 @@ KindSolver = Callable[[Columns], Array]
 
 
 def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
-    """Return a solver for the sum of the forms' matrices and for forces of all kinds. The solver keeps one factor for each kind.
+    """Return a solver for forces of all kinds; its matrix is the sum of the forms' matrices. The solver keeps one factor for each kind.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -554,7 +556,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
 
 
 def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
-    """Compute displacements from forces with the sum of the forms' matrices. Kinds are solved one after another; no factor is kept.
+    """Solve for the displacements due to forces, with the sum of the forms' matrices, one kind after another; no factor is kept.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -579,7 +581,7 @@ def _solve_each(forces: Columns, solver: Callable[[int], Solver]) -> Array:
 def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver:
     """Return a solver for a form's matrix on the free DOFs: a function of forces (n, k) that returns displacements, zero at fixed DOFs.
 
-    In addition to the fixed DOFs of the field, DOFs at the mirrors that are zero in motions of a `kind` are fixed.
+    DOFs at the mirrors that are zero in motions of this `kind` are fixed in addition to the fixed DOFs of the field.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

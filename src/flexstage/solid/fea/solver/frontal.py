@@ -38,7 +38,7 @@ _SMALL = 40
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Input of `dissect`: `faces` (n, 4) and `places` (n, 3) of n elements, and all pairs (m,) of a node and its element.
+    """Input of `dissect`: numbers of the `faces` (n, 4) and centres `places` (n, 3) of n elements; all m pairs of a node and its element.
 
     `count` is the number of nodes.
     """
@@ -234,12 +234,13 @@ class Factorised:
 
 
 def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Iterator[Factorised]:
-    """Factorise a sum of matrices, positive definite on the free nodes, once for each set of `held` (fixed) degrees of freedom.
+    """Factorise the sum of `matrices`, which is positive definite on the free nodes, once for each set of `held` (fixed) DOFs.
 
     Matrices are `scipy.sparse.csr_array` with both triangles. The DOFs of all nodes along x come first, then those along y, then along z.
     For each pair of coupled nodes, all nine entries are stored. Each row of `held` (k, n) is the mask of one set of fixed DOFs, which are
-    decoupled from all others. Sets share a front if neither the front nor its children have held DOFs. The sets are factorised one after
-    another, when needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
+    decoupled from all other DOFs. All sets share the factor of a front if no DOF of the front or its descendants is held. The sets are
+    factorised one after another, when needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is
+    not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
     parts, met = [_Entries.of(order, matrix) for matrix in matrices], np.any(by_node, axis=(0, 2))

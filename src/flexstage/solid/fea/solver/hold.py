@@ -40,7 +40,10 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions due to unit twists of m `faces` (n, 6 m), unit `warps` (n, w), and loads `within` with faces fixed; `solve` gives others."""
+    """Motions due to unit twists of m `faces` (n, 6 m), due to unit `warps` (n, w), and due to loads with fixed faces (`within`).
+
+    `solve` computes motions due to other forces.
+    """
 
     faces: Columns
     warps: Columns
@@ -49,7 +52,7 @@ class Support:
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
-    """Return whether all motions of an interface are constrained, not only the mean: according to `hold`, or at a stack's end cap.
+    """Return whether the complete motion of an interface is constrained, not only its mean: according to `hold`, or by a stack's end cap.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
@@ -60,9 +63,10 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
 
 
 def support(component: Component, space: Field, reduction: Reduction, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
-    """Constrain a component's interfaces. `elastic` and `mass` are stiffness and inertia; rigid and grounded faces are fixed in `space`.
+    """Constrain a component's interfaces. `elastic` is the stiffness, `mass` the inertia.
 
-    Responses to `loads` within the component are computed with the same factor, which is not kept unless it is needed later.
+    Rigid faces and faces on the ground are fixed in `space`. Responses to `loads` within the component use the same factorisation, which is
+    kept only if it is needed later.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field, inertia, stiffness

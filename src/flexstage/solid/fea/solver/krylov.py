@@ -29,7 +29,7 @@ class Pencil:
 
 
 def lowest_modes(pencils: Sequence[Pencil], count: int) -> list[Array]:
-    """Compute the `count` lowest modes of several pencils together by block Lanczos with full orthogonalisation; (size, k) for each pencil.
+    """Find the `count` lowest modes among all pencils by block Lanczos with full orthogonalisation; return modes (size, k) for each pencil.
 
     There are fewer modes if the rank of the mass matrices is below `count`. Golub and Underwood, in Mathematical Software III (1977), 361.
 

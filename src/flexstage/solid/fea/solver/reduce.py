@@ -84,8 +84,8 @@ def reduce_mesh(
     """Assemble and reduce a meshed component, with progress reports.
 
     If `springs` (6 m, 6 m) connect the interfaces, the modes are computed with interfaces that are free except for the springs, instead of
-    with fixed interfaces. If a whole stage is one component, these modes are exact. With `springs`, static shapes of loads on other bodies
-    than the platform are not computed, because the mesh is large; such static responses are approximate.
+    with fixed interfaces. If a whole stage is one component, these modes are exact. With `springs`, the mesh is large. Therefore no static
+    shapes are computed for loads on bodies other than the platform, and static responses to these loads are approximate.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

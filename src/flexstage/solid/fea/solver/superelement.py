@@ -31,12 +31,12 @@ class Superelement:
     """A reduced component in its own axes. Its n coordinates are interface twists, `warps` and internal coordinates.
 
     The twist of an interface is at the interface's own point. `stiffness` and `inertia` have a matrix (n, n) for each link and body. For
-    each body, `bodies` (6, n) give its mean twist from the coordinates; `inertia` includes the inertia `body_inertia` (6, 6) for these
-    twists. For each link, `resultants` (6, n) give the wrench at its centre, in its frame. For each stack, `strokes` (n,) are the forces of
-    a unit free stroke, and `free_strokes` (n,) the coordinates after this stroke without constraint. `rigid` (n, 6) are the rigid motions
-    about the component's origin (only without fixed joints); `carried` (n, 6) are the inertial forces of unit rigid accelerations. `seats`
-    (6, n) give the twist of the surface around each end of a part without a shape. A floating component has one interface: its own rigid
-    motion about the reference point of its first body.
+    each body, `bodies` (6, n) map the coordinates to its mean twist; its inertia for this twist, `body_inertia` (6, 6), is included in
+    `inertia`. For each link, `resultants` (6, n) give the wrench at its centre, in its frame. For each stack, `strokes` (n,) are the forces
+    due to a unit free stroke, and `free_strokes` (n,) are the coordinates after this stroke if nothing constrains it. `rigid` (n, 6) are
+    the rigid motions about the component's origin (only without fixed joints); `carried` (n, 6) are the inertial forces of unit rigid
+    accelerations. `seats` (6, n) give the twist of the surface around each end of a part without a shape. A component without joints has
+    one interface, whose twist is the component's rigid motion about the reference point of its first body.
     """
 
     interfaces: int

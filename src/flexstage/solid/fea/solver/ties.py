@@ -111,7 +111,10 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
 
 
 def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
-    """Build the contribution of a superelement; strain: port twists relative to the first port, then mode amplitudes `inner` (m, N)."""
+    """Build a superelement's contribution.
+
+    Its strains are the port twists relative to the first port, then m mode amplitudes `inner` (m, N).
+    """
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
