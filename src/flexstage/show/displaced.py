@@ -162,7 +162,7 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
 
 
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
-    """Write the effect of misaligning each instance as an HTML page; the animation shows the most critical instance."""
+    """Write an HTML page on the effect of misaligning each instance; the animation shows the most critical instance."""
     worst = found.worst
     sections = [
         section("Instance by instance", misalignment_tables(found)),

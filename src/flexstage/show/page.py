@@ -54,7 +54,7 @@ class Viewer:
 
 @dataclass(frozen=True)
 class JoinedViewers:
-    """Two viewers side by side: if a motion is chosen in one viewer, the other shows its partner from `partners`."""
+    """Two viewers side by side. If a motion is chosen in one viewer, the other shows the motion that `partners` pairs with it."""
 
     viewers: tuple[Viewer, Viewer]
     partners: tuple[tuple[str, str], ...]

@@ -51,7 +51,8 @@ class Grid:
 def grid_of(part: Sheet | Matrix) -> Grid:
     """Convert a part of a result to a grid.
 
-    The heads or a column contain the units of a matrix; without common units, each entry becomes a row.
+    If every column of a matrix has one unit, the grid's `units` contain it; if every row has one unit, a column of units is added.
+    Otherwise, each entry becomes a row with its unit.
 
     >>> import numpy as np
     >>> grid_of(Matrix(np.array([[2.0, 3.0]]), ("x",), ("a", "b"), (("m", "N"),)))
@@ -110,6 +111,6 @@ def _frame(sheet: Sheet) -> Any:
 def to_xarray(result: Any) -> dict[str, Any]:
     """Return every part of a result as xarray, by the part's path in the document. Needs the extra `tables`.
 
-    A matrix becomes an array; any other part becomes a dataset. Names of rows are coordinates of a dimension.
+    A matrix becomes an array; any other part becomes a dataset. The names of the rows are the coordinates of a dimension.
     """
     return {path: part.to_xarray() if isinstance(part, Matrix) else _frame(part).to_xarray() for path, part in parts(result)}

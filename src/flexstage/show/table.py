@@ -138,10 +138,11 @@ def row_table(
 ) -> Table:
     """Make a table with one row for each record or name, and one column for each field.
 
-    `source` is a single record, or a mapping or sequence of records of one class. A record with labelled matrices or arrays with `Along`
-    has one row for each of their names. `fields` are the shown fields in sequence; by default, all fields whose values fit into cells. The
-    head of a column is the field's `Heading`, or otherwise the field's name and unit. `head` is the head of the column of names; for two
-    such columns it contains both heads, for example `path, axis`. Values outside a field's `Bound` are marked.
+    `source` is a single record, or a mapping or sequence of records of one class. A record that contains a labelled matrix, or arrays
+    marked with `Along`, has one row for each name along their first axis. `fields` are the shown fields in sequence; by default, all fields
+    whose values fit into cells. The head of a column is the field's `Heading`, or otherwise the field's name and unit. `head` is the head
+    of the column of names; for two such columns it contains both heads, for example `path, axis`. Values outside a field's `Bound` are
+    marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -206,7 +207,7 @@ def _columns_at(records: Sequence[Any], path: str, counts: Sequence[int], names:
 
 
 def merge_rows(table: Table) -> Table:
-    """Merge rows with equal cells into one row with all names. Links of several instances are merged only if their own names are equal.
+    """Merge rows with equal cells into one row with all names. Links of several instances must also have equal names in their units.
 
     >>> merge_rows(make_table("", ["link", "free"], [("B1/tip", "rz"), ("B1/foot", "rz"), ("B2/tip", "rz")])).texts()[1:]
     [['tip (B1, B2)', 'rz'], ['B1/foot', 'rz']]
@@ -309,7 +310,7 @@ def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provena
 
 
 def result_tables(result: Any) -> Iterator[Table]:
-    """Make a table for every part of a result, with the part's path in the document as title. Long tables show their first rows.
+    """Make a table for every part of a result, with the part's path in the document as title. Only the first rows of long tables are shown.
 
     >>> [table.title for table in result_tables({"gain": 2.0, "loss": {"B1": 0.1, "B2": 0.2}})]
     ['', 'loss']
@@ -397,7 +398,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
 
 
 def interval_text(low: float, high: float) -> str:
-    """Format an interval. Both ends are rounded to two significant digits of the interval's width.
+    """Format an interval. Both ends are rounded to the second significant digit of the interval's width.
 
     >>> interval_text(118.0101, 118.0145), interval_text(1.0, float("inf"))
     ('118.0101 to 118.0145', '-')

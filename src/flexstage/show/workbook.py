@@ -31,8 +31,8 @@ def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
     """Convert a result to the bytes of an XLSX file, with a sheet for each part: heads, SI units below heads, then names and numbers.
 
     Numbers have 16 digits. Unknown values are empty cells; infinity and numbers too large for a cell (1e308) are texts. The last sheet
-    lists the source: the version of flexstage and the entries of `about`. Equal results give equal bytes. Raises `DesignError` for tables
-    longer or wider than a sheet.
+    lists the source: the version of flexstage and the entries of `about`. Equal results give identical files. Raises `DesignError` for
+    tables longer or wider than a sheet.
 
     >>> to_xlsx({"gain": 2.0, "loss": {"B1": 0.1}})[:2]
     b'PK'

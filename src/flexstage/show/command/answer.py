@@ -67,10 +67,10 @@ _Given = ParamSpec("_Given")
 def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], Callable[_Given, None]]:
     """Make a command from a function that returns a `CommandResult`.
 
-    The command writes the requested documents, or prints the tables. A parameter of a dataclass type is replaced by the options among
-    its fields; a `Mechanism` is read from its file. `files` names further options for output files, such as `report` and files that the
-    function writes. All outputs are checked before the function is called. If an output is stdout, no tables are printed. A function that
-    returns `None` must write its outputs itself.
+    The command writes the requested documents, or prints the tables. A parameter of a dataclass type is replaced by the options among its
+    fields; a `Mechanism` is read from its file. `files` names further options for output files, such as `report` or a file that the
+    function writes itself. All outputs are checked before the function is called. If an output is stdout, no tables are printed. A function
+    that returns `None` must write its outputs itself.
     """
 
     def decorate(function: Callable[_Given, CommandResult | None]) -> Callable[_Given, None]:
@@ -175,7 +175,7 @@ def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ..
 
 
 def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
-    """Print the missing results and the reasons to stderr, one line for each reason. `forced`: the stage is force-driven."""
+    """Print the missing results and the reasons to stderr, one line for each reason. `forced` means a force-driven stage."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
         text = reason.partition(". ")[0].rstrip(".")

@@ -56,7 +56,7 @@ def with_elastic_bodies(mechanism: Mechanism, *, chosen: bool) -> Mechanism:
 
 
 def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Sequence[tuple[str, str | Path | None]] = ()) -> Mechanism:
-    """Read a description with changes, after a check that the outputs (option and path) are writable.
+    """Check that the outputs (pairs of option and path) are writable, then read a description and apply the changes.
 
     Raises `DesignError` with all errors.
     """

@@ -168,7 +168,7 @@ def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> 
 
 
 def quantity_of(model: Nonlinear, drive: str) -> Quantity:
-    """Return the physical quantity of a drive, which is an input of the model or a coordinate."""
+    """Return the physical quantity of the model's input or coordinate that `drive` names."""
     units = {channel.name: channel.unit for channel in model.inputs}
     if drive in units:
         return quantity_of_unit(units[drive])

@@ -40,7 +40,7 @@ def word_option(
     otherwise: Mapping[str, str] = _NOTHING,
     show_default: bool = True,
 ) -> Any:
-    """Define an option with a choice of `words`, by default all values of the `kind`. `otherwise` maps likely wrong words to hints."""
+    """Define an option with a choice of `words`, by default all values of the `kind`. `otherwise` maps likely mistakes to hints."""
     words = words or [str(each.value) for each in kind]
     return typer.Option(
         name,

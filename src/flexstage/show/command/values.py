@@ -111,8 +111,8 @@ def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
     """Read white spectra by input from texts INPUT=DENSITY of `--input-asd`.
 
-    The unit of the amplitude spectral density shows whether it belongs to the input, or to its first or second derivative. All errors are
-    reported together.
+    The unit of an amplitude spectral density determines whether it is the density of the input, its velocity or its acceleration. All
+    errors are reported together.
     """
     return read_pairs(densities, "--input-asd", partial(_spectrum, model))
 

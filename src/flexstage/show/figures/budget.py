@@ -35,7 +35,7 @@ def energy_figure(lost: LostMotion) -> Any:
 
 
 def error_figure(budget: ErrorBudget) -> Any:
-    """Plot the error budget by source, for translations and rotations, by ideal and by corrected mapping, as a matplotlib Figure."""
+    """Plot the error budget by source, for translations and rotations, with ideal and with corrected mapping, as a matplotlib Figure."""
     return _bar_figure([_errors(budget, rows, unit) for rows, unit in ((slice(0, 3), "m"), (slice(3, 6), "rad"))])
 
 

@@ -27,7 +27,7 @@ def format_of(name: str) -> str:
 
 
 def drawing(figure: Any, ending: str) -> bytes:
-    """Return the content of a figure file in the format of an `ending`. Equal figures have equal bytes.
+    """Return the content of a figure file in the format of an `ending`. Equal figures give identical files.
 
     >>> from flexstage.show.figures.style import canvas
     >>> drawing(canvas(1.0, 1.0), ".svg")[:5]

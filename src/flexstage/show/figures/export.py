@@ -22,8 +22,8 @@ _BETWEEN = re.compile(r">\s*(?:<defs>\s*<style.*?</defs>)?\s*(?=<|$)", re.DOTALL
 def to_svg(figure: Any, name: str, description: str) -> str:
     """Convert a figure to an SVG element for an HTML page. `name` makes the identifiers in the SVG element unique.
 
-    Equal figures give equal SVG. The colours of text, lines and background are CSS variables of the page; their defaults are the colours of
-    the style. `description` is the text for screen readers.
+    Equal figures give identical SVG. The colours of text, lines and background are CSS variables of the page; their defaults are the
+    colours of the style. `description` is the text for screen readers.
 
     >>> from flexstage.show.figures.style import canvas
     >>> to_svg(canvas(1.0, 1.0), "empty", "nothing")[:33]

@@ -20,7 +20,8 @@ _DIGITS = 5
 class Spot:
     """A named point of a figure: its `text` appears if the cursor is close to (`x`, `y`) in panel number `panel`.
 
-    If `y` is `None`, only the distance of the cursor from `x` matters. `plays` is the name of the motion that the page's viewer then shows.
+    If `y` is `None`, only the distance of the cursor from `x` matters. `plays` is the name of the motion that a button beside the text
+    starts in the page's viewer.
     """
 
     x: float

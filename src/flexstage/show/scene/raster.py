@@ -56,7 +56,7 @@ def normals(corners: Array) -> Array:
 
 
 def planes(corners: Array, values: Array) -> Array:
-    """Interpolate values (t, 3) at the corners of triangles linearly. Triangles without area have coefficients of zero.
+    """Interpolate the corner values (t, 3) of triangles linearly. Triangles without area have coefficients of zero.
 
     Returns the coefficients (t, 3) of each triangle: the change of the value per pixel to the right, the change per pixel down, and the
     value at pixel coordinates 0.

@@ -32,7 +32,7 @@ def mobility_table(kinematics: Kinematics) -> Table | None:
 
 
 def actuation_text(kinematics: Kinematics) -> str:
-    """Describe whether the strokes determine the platform, and along which coordinates forces act individually.
+    """Describe whether the strokes determine the platform's pose, and along which coordinates forces can act individually.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -64,7 +64,7 @@ def _command_text(kinematics: Kinematics) -> str:
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
-    """Tabulate V^T W, the generalised forces along the ideal motions V of the wrenches W per unit input of each force actuator.
+    """Tabulate V^T W, the generalised forces along the ideal motions V; W contains the wrench per unit input of each force actuator.
 
     Returns `None` without force actuators.
 
@@ -121,7 +121,7 @@ def jacobian_table(kinematics: Kinematics) -> Table:
 def motion_table(kinematics: Kinematics) -> Table | None:
     """Tabulate V, the ideal motions of a platform with fewer than six DOFs. Returns `None` for platforms with six DOFs.
 
-    Entries outside the named coordinates are parasitic motions.
+    Each column is named after a coordinate; the rows of all other coordinates contain parasitic motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

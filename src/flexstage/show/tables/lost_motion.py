@@ -129,7 +129,7 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """Select links in instances of units that contribute significantly to a loss in `columns`, from links `ranked` by contribution.
+    """From links `ranked` by contribution, select links in instances of units that contribute significantly to a loss in `columns`.
 
     >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
     ['B2/front']

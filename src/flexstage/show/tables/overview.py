@@ -255,7 +255,9 @@ def _weakest_text(found: HingeStress) -> str:
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
-    """Format the verdict: number of requirements that are met, the smallest margin and its cause. Unless `whole`, list further options.
+    """Format the verdict: number of requirements that are met, the smallest margin and its cause.
+
+    Unless `whole`, name the options --full and --report.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -17,7 +17,7 @@ _NOISE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One entry of a frequency response: complex ratios of output to input, `values` (f,), in the SI unit `unit`."""
+    """One entry of a frequency response: the complex ratios `values` (f,) of output to input at f frequencies, in the SI unit `unit`."""
 
     output: str
     input: str

@@ -28,7 +28,7 @@ def command_text(command: Mapping[str, Number]) -> str:
 
 
 def stroke_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Tabulate the platform's strokes along single coordinates, ideal and with corrected lost motion, and the use of actuators."""
+    """Tabulate the platform's strokes along single coordinates, ideal and with corrected lost motion, and the required actuator strokes."""
     yield result_table(workspace.single_axis)
     yield result_table(workspace.corrected, title="Single-axis strokes with corrected lost motion")
     yield None if workspace.worst_case is None else corner_table(workspace.worst_case)
@@ -50,7 +50,7 @@ def corner_table(corner: Utilisation) -> Table | None:
 
 
 def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Tabulate gauge readings at the commanded corner with their ratios to the gauges' ranges, and the pose resolution."""
+    """Tabulate gauge readings at the worst combination of commands, their ratios to the gauges' ranges, and the pose resolution."""
     gauges = workspace.gauges
     yield None if gauges is None else result_table(gauges, notes=[f"Worst combination of {command_text(gauges.command)}."])
     yield result_table(workspace.resolution)

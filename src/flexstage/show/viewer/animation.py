@@ -96,7 +96,10 @@ def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligne
 
 
 def curves_of(along: Matrix) -> tuple[Curve, ...]:
-    """Convert quantities along a path (rows: points, columns: quantities) to curves in display units. The first curve is the drive."""
+    """Convert quantities along a path (rows: points, columns: quantities) to curves in display units.
+
+    The first curve is the quantity that is varied.
+    """
     return tuple(
         Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
         for name, values, form in quantities_of(along)

@@ -20,8 +20,8 @@ class Bend:
     """Shape functions of a straight part with its first end fixed, for an offset and a rotation of its second end.
 
     The deflection at the fraction s of the length L, 0 to 1, is v(s) = offset N(s) + rotation L M(s). N, M and their slopes are zero at the
-    ends, except N(1) = M'(1) = 1. The columns of `values` (n, 5) at the fractions `shares` (n,) are s (for elongation and twist), N, M, N'
-    and M'.
+    ends, except N(1) = M'(1) = 1. The columns of `values` (n, 5) contain s (which interpolates elongation and twist), N, M, N' and M' at
+    the fractions `shares` (n,).
     """
 
     shares: Array
@@ -35,9 +35,9 @@ class Bend:
 def bend_of(part: Part | None) -> Bend:
     """Compute the shape functions of a part as a beam with its cross-sections and with loads at its ends only.
 
-    Curvature is proportional to (a + b s) / I(s), with the smallest second moment of area I. The constants a and b follow from the
-    conditions at the ends. For a uniform part, the functions are cubic Hermite polynomials. Shear is neglected. A part without a shape is
-    treated as uniform.
+    Curvature is proportional to (a + b s) / I(s), where I is the least second moment of area of the section. The constants a and b follow
+    from the conditions at the ends. For a uniform part, the functions are cubic Hermite polynomials. Shear is neglected. A part without a
+    shape is treated as uniform.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> bend_of(Leaf("steel", 0.02, 0.001, 0.01)).at(np.array([0.5, 1.0])).round(4).tolist()

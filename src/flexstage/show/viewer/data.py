@@ -75,14 +75,14 @@ class StageData:
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
 
     def reach(self, motion: Motion) -> float:
-        """Return the largest displacement [m] of a vertex in a motion; in a large motion, of a body's reference point or a node."""
+        """Return a motion's largest displacement [m]: of any vertex or, in a motion with a `course`, of any reference point or node."""
         if motion.course is not None:
             return motion.course.reach
         moved = self.mesh.displacement(motion.twists)
         return float(np.sqrt(np.max(np.sum(moved**2, axis=1), initial=0.0)))
 
     def document(self) -> dict[str, Any]:
-        """Convert to plain values with the names of the page's program (`web/src/viewer/types.ts`)."""
+        """Convert to plain values, named as in the page's program (`web/src/viewer/types.ts`)."""
         return {
             "format": FORMAT,
             "name": self.name,
@@ -101,7 +101,7 @@ class StageData:
         }
 
     def text(self) -> str:
-        """Convert the document to JSON. Equal stages give equal bytes."""
+        """Convert the document to JSON. Equal stages give identical text."""
         return json.dumps(self.document(), separators=(",", ":"), allow_nan=False)
 
     def _label(self, label: Label) -> dict[str, Any]:

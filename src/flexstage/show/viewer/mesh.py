@@ -37,7 +37,7 @@ class Mesh:
 
     @cached_property
     def centres(self) -> Array:
-        """Points (v, 3) on the straight lines between the ends of carriers, at each vertex's fraction of the length."""
+        """Point (v, 3) for each vertex: on the line between its carrier's ends, at the vertex's fraction of the length."""
         first, second = self.ends[self.carrier, 0], self.ends[self.carrier, 1]
         return first + self.stations[self.station, :1] * (second - first)
 
@@ -72,7 +72,7 @@ def mesh_of(
 ) -> Mesh:
     """Build the mesh of drawn pieces, with the numbers of bodies and parts by name.
 
-    `bends` are the shape functions by piece; `straight` is used for all other pieces.
+    `bends` contains shape functions by name of the piece; all other pieces have the shape functions `straight`.
 
     >>> mesh_of((), {}, {}, {}, Bend(np.zeros(1), np.zeros((1, 5)))).points.shape
     (0, 3)

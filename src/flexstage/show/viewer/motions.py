@@ -75,10 +75,10 @@ class Response:
 class PathMotion:
     """Large displacements through the points of a path, or a small motion about one displaced state.
 
-    `poses` (f, rows, 6) are displacements and rotation vectors: of the ground, the reference points of the bodies, and the nodes along
-    bending pieces. `frames` (f,) are the numbers of the path's points with these poses. `shape` (rows, 6) is a small motion about the
-    displaced state (None for large displacements). `curves` are quantities along the path; the first is the drive. For every point,
-    `beyond` contains the numbers of parts that exceed a limit, and `said` describes the exceeded limits.
+    `poses` (f, rows, 6) are displacements and rotation vectors of the ground, the bodies' reference points, and the nodes along bending
+    pieces. `frames` (f,) are the numbers of the points of the path that have these poses. `shape` (rows, 6) is a small motion about the
+    displaced state (None for large displacements). `curves` are quantities along the path; the first is the quantity that is varied. For
+    every point, `beyond` contains the numbers of parts that exceed a limit, and `said` describes the exceeded limits.
     """
 
     frames: Array
@@ -100,10 +100,10 @@ class Motion:
     """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground first.
 
     `name` is unique in its group; `remark` contains further information; modes have a `frequency` [Hz]. `energy` contains the strain-energy
-    fractions of links and other elastic parts by name, `None` if unknown. `stress` contains the utilisation of links by name, in the state
-    that `stressed` describes, for example at the full stroke. The amplitudes of all motions except modes are physical. A motion with large
-    displacements, along a path or about a displaced state, has a `course` instead of twists. Motions over time have a `response`; their
-    twists belong to the time of the largest displacement.
+    fractions of links and other elastic parts by name, `None` if unknown. `stress` contains the stress utilisation of links by name;
+    `stressed` describes the state to which it applies, such as the full stroke. The amplitudes of all motions except modes are physical. A
+    motion with large displacements, along a path or about a displaced state, has a `course` instead of twists. Motions over time have a
+    `response`; their twists belong to the time of the largest displacement.
     """
 
     group: Group
@@ -193,7 +193,7 @@ def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> d
 
 
 class Bearing:
-    """Calculator of the stress utilisation of links; it needs their sections and limits, and a model with their forces."""
+    """Calculator of the stress utilisation of links from their sections, their stress limits, and their forces in a model."""
 
     def __init__(self, mechanism: Mechanism, model: LinearModel) -> None:
         known = {channel.name for channel in model.outputs}

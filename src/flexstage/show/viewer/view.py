@@ -36,7 +36,7 @@ class View(CheckedFields):
 
     @property
     def html(self) -> str:
-        """HTML page of the view in one file, which loads no other file. Equal stages give equal bytes."""
+        """HTML page of the view in one file, which loads no other file. Equal stages give identical pages."""
         name = escape(self.data.name)
         head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{name}</title>'
         body = f"<main><h1>{name}</h1>{fragment(self.data, motion=self.motion, instead=self.picture)}</main>"

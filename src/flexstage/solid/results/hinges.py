@@ -72,9 +72,9 @@ class SolidHinge(DistinctHinge, InNotebook):
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
         """Whether each direct compliance is separable: it is at least 10 % of the compliance of hinge and stubs together.
 
-        The solid contains stubs (pieces of the blocks) next to the hinge. The compliance of the stubs, as beams with restrained warping
-        (Vlasov), is subtracted. In torsion, a wide notch is stiffer than its stubs; the result is then a small difference of two large
-        numbers, and beam theory of the stubs is too inaccurate.
+        The solid contains stubs (pieces of the blocks) next to the hinge. The compliance of the stubs by beam theory with restrained
+        warping (Vlasov) is subtracted. In torsion, a wide notch is stiffer than its stubs; the result is then a small difference of two
+        large numbers, and beam theory of the stubs is too inaccurate.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)

@@ -46,10 +46,10 @@ class BodyCost:
 class SolidStage(InNotebook):
     """Results of a stage by the solid model.
 
-    `statics` and `modes` are defined as for any model. `stress` is the highest stress at every link and body over all corners of the stroke
-    range, measured from zero voltage, with permanent load. `stress` is `None` without strokes or with too many corners. `worst` (N,) are
-    the model's coordinates at the corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the
-    elastic bodies in each mode.
+    `statics` and `modes` are defined as for any model. `stress` is the highest stress of every link and body over all corners of the range
+    of strokes, which are measured from zero voltage, with permanent load. `stress` is `None` without strokes or with too many corners.
+    `worst` (N,) are the model's coordinates at the corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy
+    fraction of the elastic bodies in each mode.
     """
 
     statics: Annotated[Statics, Called("stiffness")]

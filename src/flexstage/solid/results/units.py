@@ -36,8 +36,8 @@ _STEPS = 5
 class SolidUnit(UnitOutput, InNotebook):
     """Results of one isolated unit by the linear solid model without load; the unit's output is guided along `direction`.
 
-    `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the stress at every link at the full stroke.
-    For pictures, `motion` (N,) are the coordinates of the unit's model `read` at the full stroke.
+    `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the highest stress of every link at the full
+    stroke. For pictures, `motion` (N,) are the coordinates of the unit's model `read` at the full stroke.
     """
 
     TABLE: ClassVar[Layout] = Layout(

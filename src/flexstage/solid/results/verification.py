@@ -69,7 +69,7 @@ class Row:
 
     `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the axial-spring model of Shin &
     Moon, if this model applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is
-    the estimated relative error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the modal
+    the estimated relative error of FEA. `calibration` names the parts whose data in the theory are from FEA. `modal_assurance` is the modal
     assurance criterion (MAC) of paired modes. Unknown values are `None`, and `reason` explains them. If `calibration` is empty, a verdict
     requires `theory` and `fea_error`.
     """

@@ -36,8 +36,8 @@ def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Find
 
     If a link has a shape, each of its end faces must be entirely on the outline of the body that it joins. Bodies without outlines are not
     checked. Outlines of the ground are checked only for links in the same unit. Outlines of one body must form one solid, joined over
-    faces. All other outlines must be farther apart than `clearance` [m]; contact, within 1 um, is an error. No step, gap, edge or face may
-    be much smaller than the local geometry.
+    faces. All other outlines must be farther apart than `clearance` [m]; contact (a distance up to 1 um) is an error. No step, gap, edge or
+    face may be much smaller than the local geometry.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())

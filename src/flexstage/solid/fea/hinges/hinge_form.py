@@ -25,7 +25,7 @@ class HingeForm(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class HingeSolid:
-    """6x6 matrices [SI] of a hinge by three-dimensional elasticity, between the ends of its arcs, about its centre in the link frame.
+    """6x6 matrices [SI] of a hinge between the ends of its arcs, computed by 3-D elasticity about its centre in the link frame.
 
     `compliance` and `stiffness` (6, 6) are for the twist (x, y, z, rx, ry, rz) of the second end relative to the first. `error` estimates
     the largest relative error of the compliance *at the hinge's end*, where the error of each entry ij is divided by sqrt(C_ii C_jj).

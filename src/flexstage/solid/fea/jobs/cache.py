@@ -40,9 +40,10 @@ SOUND = Kind(".sound", "record of checked outlines")
 
 @dataclass(frozen=True)
 class Cache(CheckedFields):
-    """Folder of superelements and hinges, and size `limit` [bytes] of each kind of file: the least recently used files are removed first.
+    """Folder of stored superelements and hinges.
 
-    The default `folder` is that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
+    `limit` [bytes] is the largest total size of each kind of file; the least recently used files are removed first. The default `folder` is
+    that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
     """
 
     folder: Path | None = None

@@ -68,7 +68,7 @@ class Pool:
             self.end(worker)
 
     def worker(self, job: Job) -> Worker:
-        """Return an idle process for a job, preferably after a similar job, or a new process. Raises `OSError` if none can start."""
+        """Return an idle process for a job, preferably one that did a similar job, else a new one. Raises `OSError` if none can start."""
         for each in self.idle:
             if each.process.poll() is not None:
                 self.end(each)

@@ -57,7 +57,7 @@ def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
 
 
 def from_bytes(data: bytes, key: str) -> Any:
-    """Return the value stored by `to_bytes`, or a string if the file is damaged, of another version, or of other content.
+    """Return the value stored by `to_bytes`, or the reason as text if the file is damaged, of another version, or of other content.
 
     >>> from_bytes(b"nonsense", "key")
     'it is damaged: unknown header'

@@ -40,8 +40,8 @@ class Joint:
 class Interface:
     """A joint at the boundary of a component: the end face of one of its links, or the imprint (`footprint`) of another component's link.
 
-    A joint `yields` if both sides are elastic: its face then deforms equally on both sides. End caps of stacks and rigid bodies keep the
-    face plane.
+    A joint `yields` if both sides are elastic: its face then deforms equally on both sides. A face on a rigid body or on an end cap of a
+    stack stays plane.
     """
 
     joint: Joint

@@ -471,7 +471,7 @@ def _matrix(form: ngsolve.BilinearForm) -> Any:
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
-    """Return the stiffness plus `shift` times the inertia: positive definite without any support.
+    """Return the stiffness plus `shift` times the inertia: the sum is positive definite even without support.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -83,9 +83,9 @@ def reduce_mesh(
 ) -> Superelement:
     """Assemble and reduce a meshed component, with progress reports.
 
-    If `springs` (6 m, 6 m) connect the interfaces, the modes are computed with interfaces that are free except for the springs, instead of
-    with fixed interfaces. If a whole stage is one component, these modes are exact. With `springs`, the mesh is large. Therefore no static
-    shapes are computed for loads on bodies other than the platform, and static responses to these loads are approximate.
+    If `springs` (6 m, 6 m) connect the m interfaces, the modes are computed with interfaces on these springs instead of fixed interfaces.
+    If a whole stage is one component, these modes are exact. With `springs`, the mesh is large. Therefore no static shapes are computed for
+    loads on bodies other than the platform, and static responses to these loads are approximate.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -33,7 +33,7 @@ _NEAR = 1e-9
 
 
 def skin(space: Field, motions: Columns) -> Skin:
-    """Build the surface of a field's mesh, with displacement and stress in `motions`; for a mesh with mirrors, the surface of the whole.
+    """Build the surface of a field's mesh, with displacement and stress in `motions`. A mesh with mirrors gives the surface of the whole.
 
     Stresses are evaluated within each triangle and extrapolated to its corners. The stress at a vertex is the mean over its triangles,
     weighted by the Jacobian, because strains of a nearly folded element are meaningless.
