@@ -66,7 +66,7 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
 
 
 def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBuckling | None = None) -> str:
-    """Write the buckling in all load cases as an HTML page: buckling modes at the last stable states, the lowest factor first.
+    """Write an HTML page on buckling in all load cases: the buckling modes at the last stable states, the lowest factor first.
 
     `after` is the post-buckling path of the load case with the lowest factor.
     """

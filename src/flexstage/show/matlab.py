@@ -45,8 +45,8 @@ def _write_mat(variables: dict[str, Any]) -> bytes:
 def to_mat(result: Any) -> bytes:
     """Convert a result to the bytes of a MATLAB v5 file, in SI units.
 
-    Parts of the result are structs of columns. The struct of a matrix has `values`, `rows`, `columns` and `unit`. Names are as in the JSON
-    document, with `_` for characters that MATLAB names cannot contain.
+    Each part of the result is a struct with one field for each column. The struct of a matrix has `values`, `rows`, `columns` and `unit`.
+    Names are as in the JSON document, with `_` for characters that MATLAB names cannot contain.
 
     >>> import scipy.io
     >>> scipy.io.loadmat(io.BytesIO(to_mat({"loss": {"B/1": 0.1}})), simplify_cells=True)["loss"]

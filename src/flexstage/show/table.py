@@ -459,7 +459,7 @@ def matrix_table(
 
     Rows and columns have units, and the unit of an entry is row unit per column unit. If the units of the entries are not ratios of row and
     column units, each entry shows its unit. Rounding noise is shown as 0; a further matrix `against` may define the noise level. `units`
-    replace the preferred display units; for example, with mrad, lever arms are in mm.
+    replace the preferred display units; for example, with mrad, displacements per rotation are in um/mrad.
 
     >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
     >>> table.texts()

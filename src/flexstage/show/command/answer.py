@@ -144,7 +144,7 @@ def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], cs
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
-    """Write the parts of a result into a folder, if requested: single values as `modes.csv`, the part `twists` as `modes.twists.csv`."""
+    """Write the parts of a result into a folder, if requested: single values to `modes.csv`, the part `twists` to `modes.twists.csv`."""
     if folder is None:
         return
     make_folder(folder)

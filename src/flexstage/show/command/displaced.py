@@ -50,7 +50,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 @dataclass(frozen=True)
 class OperatingPointOptions:
-    """Operating-point options of a command. True if any option is used; otherwise, results are for the undeformed stage."""
+    """Operating-point options of a command. They count as true if any is used; else results are for the undeformed stage."""
 
     at: At = None
     load: Load = None

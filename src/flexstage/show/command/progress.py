@@ -36,7 +36,7 @@ class ProgressBar:
         self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
     def result(self, name: str, value: Any) -> None:
-        """Report a partial result. A progress bar ignores partial results."""
+        """Ignore a partial result, which `ProgressLines` prints."""
 
     def _show(self, text: str, fraction: float) -> None:
         if self._shown is not None:

@@ -39,7 +39,7 @@ def stage_picture(data: StageData, *, side: Side = Side.ISOMETRIC, width: float 
 
 
 def mode_picture(data: StageData, motion: Motion, *, width: float = FULL) -> Any | None:
-    """Draw a motion of the stage, magnified, over the undeformed platform's outline, without gauges, as a matplotlib Figure.
+    """Draw a magnified motion of the stage over the outline of the undeformed platform, as a matplotlib Figure without gauges.
 
     The view is from above if the platform moves mainly in its plane, else isometric. Blue arrows show translation of the platform, red
     arrows show rotation. Returns `None` if nothing moves.

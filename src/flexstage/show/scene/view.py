@@ -114,7 +114,7 @@ def _per_point(axes: Any) -> float:
 
 
 def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]]:
-    """Convert points (n, 3) [m] to pixels of an image of the axes, to the right, down and towards the viewer.
+    """Convert points (n, 3) [m] to pixel coordinates in an image of the axes: to the right, down and towards the viewer.
 
     Returns the points, and the numbers of rows and columns of the image.
 

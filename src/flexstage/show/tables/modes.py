@@ -14,7 +14,7 @@ _FURTHER = 3
 
 
 def mode_table(modes: Modes) -> Table | None:
-    """Tabulate frequencies, names, fractions and planes of modes, up to the third mode above the highest platform or local mode.
+    """Tabulate frequencies, names, energy fractions and planes of modes, up to the third above the highest platform or local mode.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

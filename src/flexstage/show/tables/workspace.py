@@ -57,7 +57,7 @@ def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
 
 
 def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Tabulate forces of platform and stacks, stress, buckling loads and axial forces."""
+    """Tabulate blocked forces of platform and stacks, stress, buckling loads, and loads of stacks."""
     yield result_table(workspace.platform_lines)
     yield result_table(workspace.stack_lines)
     yield weakest_first(workspace.stress)

@@ -228,7 +228,7 @@ class Bearing:
 def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
     """Yield motions for a unit input of each actuator (1 um, 1 N or 1 A), with zero input of all other actuators.
 
-    The stress is computed at the larger stroke limit of the actuator, relative to its bias or mid-range.
+    The stress is computed at the larger of the actuator's two stroke limits, which are measured from its bias or mid-range.
     """
     names, bearing = model.actuators, Bearing(mechanism, model)
     columns = model.input_index(names)

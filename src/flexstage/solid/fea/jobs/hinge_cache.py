@@ -63,7 +63,7 @@ class HingeJob(StoredJob):
         return Finding(self.name, what, "Free memory, or increase --memory")
 
     def work(self, call: Call) -> HingeSolid:
-        """Compute the compliance matrix; errors name the hinge as the user does."""
+        """Compute the compliance matrix; in errors, the hinge has the user's name."""
         from flexstage.solid.fea.hinges.hinge import hinge_compliance
 
         try:
