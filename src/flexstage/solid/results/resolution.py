@@ -40,11 +40,11 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; missing errors are unknown.
+    """A result with the estimated relative error of each value. Errors are estimates, not bounds; missing errors are unknown.
 
     The estimated error is the change from the previous order; at order two, it is a quarter of this change. At order two, errors of the
-    `unestimated` figures, which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further,
-    although the required accuracy was not reached. `raised` is the number of components with elements of one order more.
+    `unestimated` values, which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further,
+    although the required accuracy was not reached. `raised` is the number of components with elements one order higher.
     """
 
     result: Annotated[_Result, INNER]
@@ -56,7 +56,7 @@ class Converged(Generic[_Result]):
 
     @property
     def error(self) -> float:
-        """Largest error; infinite if a figure is `unestimated` or no error is known."""
+        """Largest error; infinite if a value is `unestimated` or no error is known."""
         return float("inf") if self.unestimated else max(self.errors.values(), default=float("inf"))
 
 
@@ -69,8 +69,9 @@ def converge(
 ) -> Converged[_Result]:
     """Raise the element order (3, 4) until the estimated errors are within the accuracy, or compute only at the fixed order in `asked`.
 
-    Errors are estimated by a computation with one order less. `sizes` returns the number of unknowns of each component; if it is specified,
-    components that cause a large fraction of the change get a higher order first. `measure` computes only the figures of a result.
+    Errors are estimated by a computation at the next lower order. `sizes` returns the number of unknowns of each component; if it is
+    specified, components that cause a large fraction of the change get a higher order first. `measure` computes only the values whose
+    errors are estimated (`figures`).
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)
@@ -158,7 +159,7 @@ def orders_of(asked: Resolution) -> tuple[int, ...]:
 
 
 def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
-    """Return the two reductions that are always needed: of the lowest order to compute, and of one order less for the error estimate.
+    """Return the two reductions that are always needed: at the lowest order to compute, and at the next lower order for the error estimate.
 
     >>> [way.fineness.order for way in first_reductions(Resolution())]
     [2, 3]
@@ -177,9 +178,9 @@ def reduction_of_order(order: int) -> Reduction:
 
 
 def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
-    """Estimate the relative errors of the figures `after`, computed at this `order`, from the figures `before` of the next lower order.
+    """Estimate the relative errors of the values `after`, computed at this `order`, from the values `before` of the next lower order.
 
-    At order two, a figure that differs from order one by more than half has no estimate.
+    At order two, a value that differs from order one by more than half has no estimate.
 
     >>> estimates({"a": 1.0, "b": 4.0}, {"a": 2.0, "b": 1.0}, order=2)
     {'a': 0.125}
@@ -189,7 +190,7 @@ def estimates(before: Mapping[str, float], after: Mapping[str, float], order: in
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
-    """Compute the relative changes of figures that are finite in both results.
+    """Compute the relative changes of values that are finite in both results.
 
     >>> changes({"a": 1.0, "b": 1.0, "c": float("nan")}, {"a": 2.0, "c": 1.0})
     {'a': 0.5}

@@ -65,7 +65,7 @@ _SHOWN = UnitIn("shown_unit")
 
 @dataclass(frozen=True)
 class Row:
-    """One figure by theory and by FEA, in SI units.
+    """One quantity by theory and by FEA, in SI units.
 
     `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the axial-spring model of Shin &
     Moon, if this model applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is
@@ -113,7 +113,7 @@ class Row:
 
     @property
     def trust(self) -> Annotated[TheoryCheck | None, VIEW, Heading(absent="no verdict", mark=_GRADES.__getitem__)]:
-        """Verdict: the model that is reliable for this figure; null without a verdict."""
+        """Verdict: the model that is reliable for this quantity; null without a verdict."""
         if self.calibration:
             return TheoryCheck.DEPENDENT
         if self.difference is None or self.fea_error is None:
@@ -136,7 +136,7 @@ def _relative(value: float, reference: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Verification(InNotebook):
-    """Result of a verification: rows with the compared figures, the results of the solid model, and `reasons` for missing groups."""
+    """Result of a verification: rows with the compared quantities, the results of the solid model, and `reasons` for missing groups."""
 
     mechanism: Mechanism
     rows: tuple[Row, ...]
@@ -152,7 +152,7 @@ class Verification(InNotebook):
 
     @property
     def headline(self) -> str:
-        """Summary of the last group, the stage: largest differences between theory and finite elements, and number of agreeing figures."""
+        """Summary of the last group, the stage: largest differences between theory and finite elements, number of agreeing ones."""
         name, rows = list(self.groups.items())[-1]
         good = sum(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows)
         words = departures(rows)
@@ -165,7 +165,7 @@ class Verification(InNotebook):
 
     @property
     def verdicts(self) -> Annotated[Mapping[str, str], VIEW]:
-        """Verdict on the models, in words, for each group of figures."""
+        """Verdict on the models, in words, for each group of quantities."""
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
@@ -255,7 +255,7 @@ def units_solid(
     """Compute every distinct isolated unit as a solid, to the accuracy required by `asked`.
 
     Keys of the errors have the form `unit: figure`. Components are reduced with modes, so that the same components of the stage need no
-    further computation. With `bare`, components are reduced without modes, which does not change static figures.
+    further computation. With `bare`, components are reduced without modes, which does not change static results.
     """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
@@ -451,7 +451,7 @@ def _reasons(rows: Iterable[Row]) -> str:
 
 
 def departures(rows: Iterable[Row]) -> str:
-    """Describe the differences between theory and finite elements: the worst figure of every kind, and its cause.
+    """Describe the differences between theory and finite elements: the worst quantity of every kind, and its cause.
 
     >>> row = Row("stage", "in-plane stiffness (softest), others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
     >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])

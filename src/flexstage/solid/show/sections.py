@@ -123,7 +123,7 @@ def _stress_picture(stage: SolidStage) -> Picture:
 
 
 def verification_headline(found: Verification) -> Headline:
-    """Make the headline of a verification; `good` is true if theory suffices for all figures of the stage (the last group)."""
+    """Make the headline of a verification; `good` is true if theory suffices for all quantities of the stage (the last group)."""
     rows = list(found.groups.values())[-1]
     return Headline(found.headline, all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows))
 
