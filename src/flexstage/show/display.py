@@ -81,7 +81,7 @@ def _factor(name: str, unit: str) -> float:
 
 
 def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit:
-    """Return the display unit of an SI unit for values up to `largest` [SI]: the first of `shown` that fits, else the best unit.
+    """Return the display unit of an SI unit for values up to `largest` [SI]: the first of `shown` for the same quantity, else the best.
 
     >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')

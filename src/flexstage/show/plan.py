@@ -62,7 +62,7 @@ def _ring(names: tuple[str, ...], pattern: Polar) -> Ring:
 def plan_figure(mechanism: Mechanism, data: StageData) -> Any:
     """Draw the stage from above with dimensions in mm, as a matplotlib Figure.
 
-    The drawing shows outlines of bodies and parts, circles of units and gauges with radius and position angles, envelope and aperture.
+    The drawing shows envelope, aperture, outlines of bodies and parts, and circles of units and gauges with radius and position angles.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data

@@ -483,7 +483,7 @@ def matrix_table(
 
 
 def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Remove the owner from names if all names have the same owner (the part before the dot).
+    """Remove the owner (the part before the dot) from names if all names have the same owner.
 
     >>> short_names(("platform.x", "platform.y")), short_names(("platform.x", "chuck.x")), short_names(("B1", "B2"))
     (('x', 'y'), ('platform.x', 'chuck.x'), ('B1', 'B2'))

@@ -40,7 +40,7 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each value. Errors are estimates, not bounds; missing errors are unknown.
+    """A result with the estimated relative error of each value. Errors are estimates, not bounds; unlisted errors are unknown.
 
     The estimated error is the change from the previous order; at order two, it is a quarter of this change. At order two, errors of the
     `unestimated` values, which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further,

@@ -152,7 +152,7 @@ class Verification(InNotebook):
 
     @property
     def headline(self) -> str:
-        """Summary of the last group, the stage: largest differences between theory and finite elements, number of agreeing ones."""
+        """Summary of the stage (last group): largest differences between theory and finite elements, number of agreeing quantities."""
         name, rows = list(self.groups.items())[-1]
         good = sum(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows)
         words = departures(rows)

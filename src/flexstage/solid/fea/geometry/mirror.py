@@ -64,7 +64,7 @@ class Mirrors:
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Compute products (n, k) of motions over the whole from products over one `side`; they are zero for motions of different kinds."""
+        """Compute inner products (n, k) of motions over the whole from those over one `side`; they are zero for different kinds."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:

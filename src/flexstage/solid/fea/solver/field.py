@@ -47,7 +47,7 @@ class Field:
 
     @property
     def whole_size(self) -> int:
-        """Number of DOFs of the whole, if the mesh is one side; DOFs on a mirror are counted once."""
+        """Number of DOFs of the whole component, even if the mesh is one side of it; DOFs on a mirror are counted once."""
         mirrors = self.meshed.mirrors
         own = sum((nodes_on(self, MIRRORS[axis]).astype(np.int64) for axis in mirrors.axes), np.zeros(self.size // 3, dtype=np.int64))
         return 3 * int(np.sum(mirrors.copies >> own))
