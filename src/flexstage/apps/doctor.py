@@ -137,7 +137,7 @@ def _threads() -> Row:
 
 
 def examine_folder(what: str, folder: Path) -> Row:
-    """Check whether a file can be written in a folder, by a trial file and not by the permissions.
+    """Check with a trial file whether a folder is writable, because its permissions may be misleading.
 
     >>> examine_folder("folder", Path("no such folder")).verdict
     <Verdict.BAD: 'bad'>

@@ -85,7 +85,7 @@ class Matrix(InNotebook):
 
     @property
     def unit_places(self) -> tuple[list[str], list[str], list[list[str]]]:
-        """Units for column heads, row heads and entries. A unit shared by a whole column or row is only in its head."""
+        """Units for column heads, row heads and entries. A unit common to a whole column or row is only in the head."""
         across, down = len(self.columns), len(self.rows)
         blank = [[""] * across] * down
         if isinstance(self.unit, str):

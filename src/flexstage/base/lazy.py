@@ -28,7 +28,7 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
 
 
 class LazyModule:
-    """Stand-in for a module, given by its full name, which is imported at first use.
+    """Stand-in for a module with this full name; the module is imported at first use.
 
     >>> LazyModule("math").floor(1.5)
     1

@@ -19,7 +19,7 @@ class RenderHook:
 
 
 class InNotebook:
-    """A value that prints in at most 25 lines, and that notebooks show as tables or a picture.
+    """A value that is printed in at most 25 lines, and that notebooks show as tables or a picture.
 
     >>> import numpy as np
     >>> from flexstage.base.labelled import Matrix

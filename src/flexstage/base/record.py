@@ -39,14 +39,14 @@ VIEW, INNER = Walked.VIEW, Walked.INNER
 
 @dataclass(frozen=True)
 class Along:
-    """Annotation of an array: `names` is the field with the names of its last axis."""
+    """Annotation of an array: `names` is the result field that labels its last axis with names."""
 
     names: str
 
 
 @dataclass(frozen=True, init=False)
 class Axes:
-    """Annotation of an array: `fields` are the fields (names or numbers) of its last axes. Documents contain the array without names."""
+    """Annotation of an array: `fields` are the result fields that label its last axes. Documents contain the array without labels."""
 
     fields: tuple[str, ...]
 
@@ -91,9 +91,9 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Graded:
-    """Grade of a number by its size: `best` up to `good`, warning up to `poor`, failed beyond `poor`.
+    """Grade of a number by its magnitude: `best` if it is at most `good`, a warning if at most `poor`, otherwise failed.
 
-    If `good` exceeds `poor`, larger values are better.
+    If `good` exceeds `poor`, larger numbers are better, and both are lower limits.
     """
 
     good: float
@@ -118,7 +118,7 @@ class Heading:
 
     `text` is the column heading (default: the name in words). `digits` is the number of significant digits (default: aligned decimals).
     `unit` is the display unit (default: the quantity's display unit); a ratio may be in `%`. If `varying` is true, each number is shown in
-    a suitable unit. `infinite` and `absent` are the words for infinite and absent values. `mark` returns the grade of a value.
+    a suitable unit. `infinite` and `absent` are the words for infinite and absent values. `mark` is a function that grades a value.
     """
 
     text: str = ""
@@ -174,7 +174,7 @@ class Field:
 
     @property
     def heading(self) -> Heading:
-        """Table format, with the name in words as default text.
+        """Table format of the field; the default heading is its name in words.
 
         >>> Field("blocking_force", float, (Heading(digits=4),)).heading
         Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', absent='', mark=None)
@@ -216,7 +216,7 @@ class Field:
 
 
 def key_with_unit(name: str, unit: str) -> str:
-    """Return a name followed by a unit.
+    """Return the key of a document field: its name followed by its unit.
 
     >>> key_with_unit("gain", "m/V"), key_with_unit("gain", "1"), key_with_unit("mass_factor", "1/s")
     ('gain_m_per_v', 'gain', 'mass_factor_per_s')
@@ -237,7 +237,7 @@ def result_fields(kind: type) -> Mapping[str, Field]:
 
 @functools.cache
 def walked_fields(kind: type) -> tuple[Field, ...]:
-    """Return the document fields of a result class: fields, then annotated properties."""
+    """Return the document fields of a result class: its dataclass fields, then its annotated properties."""
     own = {each.name for each in fields(kind)}
     result = {name: each for name, each in result_fields(kind).items() if name != "reasons"}
     return tuple(
@@ -305,7 +305,7 @@ def _properties(kind: type) -> Iterator[tuple[str, Any, str]]:
 
 
 def walk(record: Any) -> dict[str, Any]:
-    """Return the fields of a result as a mapping, without conversion of nested results, and the `reasons` for absent values."""
+    """Return the fields of a result as a mapping, with the `reasons` for absent values; nested results are not converted."""
     values, reasons = values_of(record)
     named, result = {each.along for each in values}, dict[str, Any]()
     for each, value in values.items():
@@ -326,9 +326,9 @@ class SideBySide:
 
 
 def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
-    """Return the document fields of a result with values, and the reasons for absent values by field name.
+    """Return the values of all document fields of a result, and the reasons for absent values by field name.
 
-    In a mapping, each key except `reasons` is a field without annotations.
+    For a mapping, each key except `reasons` becomes a field without annotations.
     """
     if isinstance(record, SideBySide):
         values, why = dict[Field, Any](), dict[str, str]()

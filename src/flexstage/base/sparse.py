@@ -137,7 +137,7 @@ def block_diagonal(blocks: Iterable[Array]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Tall matrix (p, n) for outputs, stored by its nonzero entries. Selected rows are returned as dense arrays.
+    """Matrix (p, n) with a row for each of many outputs, stored by its nonzero entries. Selected rows are returned as dense arrays.
 
     >>> import numpy as np
     >>> tall = Rows.of([Sparse(np.array([2]), np.array([[3.0]]), 4)], 4)

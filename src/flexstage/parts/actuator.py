@@ -78,7 +78,7 @@ class ThrustActuator(Actuator):
 
     @property
     def cutoff(self) -> Number | None:
-        """Cut-off frequency [Hz] between amplifier output and input; None: no lag."""
+        """Cut-off frequency [Hz] of the lag from the amplifier's output to the actuator's input; None: no lag."""
         return None
 
     def slew(self, limit: Number) -> Number | None:  # noqa: ARG002  (kinds that know one need it)
@@ -182,7 +182,7 @@ class ChargedActuator(StrokeActuator):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the bias is within the voltage range."""
+        """Required: the bias is within the voltage range."""
         yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange both values", VOLTAGE)
         advice = "Use a bias within the range of the stack"
         yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)

@@ -44,7 +44,7 @@ _Deformation: TypeAlias = tuple[_Shift, _Shift, _Shift, _Turn, _Turn, _Turn]
 
 
 class BetweenFaces(StrokeActuator):
-    """Stroke actuator with the force f = k (dx - s u): relative motion dx, stroke u, free deformation s per stroke, 6x6 stiffness k."""
+    """Stroke actuator with the force f = k (dx - s u): 6x6 stiffness k, motion dx between the faces, free deformation s per stroke u."""
 
     diagonal: _Diagonal | None
     matrix: _Matrix | None
@@ -54,7 +54,7 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def carried(self) -> Array:
-        """Mass matrix (..., 12, 12) with half of the mass at each face; twists of both faces at the centre."""
+        """Mass matrix (..., 12, 12) for the twists of both faces at the centre; half of the mass is at each face."""
         return point_masses(0.5 * self.mass, 0.5 * self.mass)
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
@@ -80,7 +80,7 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def blocking_force(self) -> Number:
-        """Blocked force along x at full stroke [N]: x component of the stiffness times the free deformation."""
+        """Blocked force along x at full stroke [N]: x component of the product of stiffness and free deformation."""
         return (self.between @ self.free_deformation[..., None])[..., 0, 0] * self.stroke
 
     @property
@@ -121,8 +121,8 @@ class Amplified(BetweenFaces, ChargedActuator):
     `stroke` is the full free stroke of the output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
     relative to the first at full stroke (default: the stroke along x). The free deformation can describe contracting actuators and
     parasitic motion. Exactly one of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness about the
-    centre at constant voltage. Half of `mass` and of `inertia` is at each face, about the centre. `free` lists the degrees of freedom of
-    the ideal model. `resonance` (one face fixed, the other free) is information only: internal modes are not modelled.
+    centre at constant voltage. Half of `mass` is at each face, and half of `inertia`, which is about the centre. `free` lists the degrees
+    of freedom of the ideal model. `resonance` (one face fixed, the other free) is information only: internal modes are not modelled.
     """
 
     kind: ClassVar[str] = "amplified"
@@ -154,7 +154,7 @@ class Amplified(BetweenFaces, ChargedActuator):
 
     @property
     def carried(self) -> Array:
-        """Mass matrix (..., 12, 12) with half of the mass and inertia at each face; twists of both faces at the centre.
+        """Mass matrix (..., 12, 12) for the twists of both faces at the centre; half of the mass and of the inertia is at each face.
 
         >>> Amplified(stroke=1e-4, mass=2.0).carried.diagonal()[:4].tolist()
         [1.0, 1.0, 1.0, 0.0]

@@ -48,7 +48,7 @@ class Solid(Description):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations between its numbers."""
+        """Required inequalities between its numbers."""
         yield from ()
 
     @property
@@ -95,7 +95,7 @@ class Block(Solid):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: the hole is smaller than the block."""
+        """Required: the hole is smaller than the block."""
         for name, hole, size in zip("xy", self.hole or (), self.size, strict=False):
             yield Order(f"hole.{name}", hole, size, "the size of the block", "Make the hole smaller")
 
@@ -135,7 +135,7 @@ class Cylinder(Solid):
 
     @property
     def thinnest(self) -> Number:
-        """Smallest dimension [m]: of length and diameter, or for a tube of length and wall thickness."""
+        """Smallest dimension [m]: the smaller of length and diameter, or of length and wall thickness for a tube."""
         wall = self.diameter if self.bore is None else 0.5 * (self.diameter - self.bore)
         return np.minimum(np.real(wall), np.real(self.length))
 
@@ -146,7 +146,7 @@ class Cylinder(Solid):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the bore is smaller than the diameter."""
+        """Required: the bore is smaller than the diameter."""
         yield Order("bore", self.bore, self.diameter, "the diameter", "Make the bore smaller")
 
     def contains(self, points: Array, slack: float) -> Array:
@@ -345,7 +345,7 @@ class Imported(Solid):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the wall is not thicker than the solid."""
+        """Required: the wall is not thicker than the solid."""
         for side in self.size:
             yield Order("wall", self.wall, side, "the sides of its bounding box", "Use the thinnest wall", strict=False)
 
@@ -489,7 +489,7 @@ def _ear(corners: Array, left: list[int], place: int) -> float:
 
 
 def within_polygon(points: Array, corners: Array, slack: float) -> Array:
-    """Return a mask of the points (n, 2) inside a polygon of corners (k, 2), or within `slack` of one of its sides (ray crossing).
+    """Return by ray crossing a mask of the points (n, 2) in the polygon with `corners` (k, 2), or within `slack` of its sides.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> within_polygon(np.array([[0.5, 0.5], [1.5, 0.5], [1.05, 0.5]]), square, 0.1).tolist()

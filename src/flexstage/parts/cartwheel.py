@@ -22,8 +22,9 @@ class Cartwheel(Compound):
     """Cartwheel hinge about z: four leaves of `length` as spokes, two from the first body to a hub, two from the hub to the second body.
 
     The link's origin is the hub's centre. The x axis points from the first body to the second and bisects both pairs of leaves. `angle` is
-    the angle between the leaves of a pair. The leaves end at the circumference of the rigid hub, of `hub_diameter` d. The hub has the
-    inertia of a disc with mass `hub_mass` m, diameter d and the leaves' width b: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
+    the angle between the leaves of a pair. The leaves end at the circumference of the rigid hub, whose diameter d is `hub_diameter`. The
+    hub has the inertia of a disc with mass `hub_mass` m, diameter d and the leaves' width b: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2
+    / 12).
     """
 
     kind: ClassVar[str] = "cartwheel"
@@ -68,6 +69,6 @@ class Cartwheel(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: leaves thinner than wide, angle of a pair below pi."""
+        """Required: the leaves are thinner than wide, and the angle of a pair is below pi."""
         yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves of a pair", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")

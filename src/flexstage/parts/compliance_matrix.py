@@ -37,7 +37,7 @@ class ComplianceMatrix(Elastic):
     Entries are in m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are the ideal degrees of
     freedom. `replaces` names the drawn part that the matrix replaces. The drawn part supplies the shape for the solid model, and the
     material for drift and structural damping. `mass` is a point mass at the part's centre; half of it belongs to each end. If `centre` (of
-    mass) or `inertia` (about the centre of mass) is specified, in the axes of the link frame, the mass is a rigid solid instead.
+    mass) or `inertia` (about the centre of mass) is specified, the mass is a rigid solid instead; both are in the axes of the link frame.
     """
 
     kind: ClassVar[str] = "compliance_matrix"
@@ -84,7 +84,7 @@ class ComplianceMatrix(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether degrees of freedom and compliance are equal along and about y and z."""
+        """Whether y and z have the same degrees of freedom and compliance, in translation and rotation."""
         return is_even(self.free) and turns_into_itself(stack(self.compliance))
 
 

@@ -21,7 +21,7 @@ _Z = (0.0, 0.0, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """Member of a compound: part, joined bodies (`first`, `second` or an inner body), and pose in the compound's frame, as for a link."""
+    """Member of a compound: part, the two bodies that it `joins` (`first`, `second`, inner bodies), and pose in the compound's frame."""
 
     part: Elastic
     joins: tuple[str, str]

@@ -38,10 +38,10 @@ class Condensed:
 
     A port's twist is about the port's origin, in its axes; the ports are in the order of their rows in the file. `stiffness` (6 (p - 1), 6
     (p - 1)) is the matrix of all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies of the
-    mass-normalised modes. `inertia` (6 p + m, 6 p + m) is the mass matrix of all ports and the modes, `damping` (6 (p - 1) + m, 6 (p - 1) +
-    m) the damping matrix without the first port (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about the centre, in the
-    part's axes, are computed from rigid motions. `error` is the ratio of the removed stiffness of rigid motions to the stiffness of the
-    softest elastic motion.
+    mass-normalised modes. `inertia` (6 p + m, 6 p + m) is the mass matrix of all ports and the modes. `damping` (6 (p - 1) + m, 6 (p - 1) +
+    m) is the damping matrix of the modes and all ports except the first (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3)
+    about the centre, in the part's axes, are computed from rigid motions. `error` is the ratio of the removed stiffness of rigid motions to
+    the stiffness of the softest elastic motion.
     """
 
     stiffness: Array

@@ -67,7 +67,7 @@ class Contact(Elastic):
         return self
 
     def stated(self, material: Material | None) -> Stated | None:
-        """Return the stiffness linearised about the preload, for the materials of ball and seat, without mass."""
+        """Return the stiffness linearised about the preload, for the materials of ball and seat; the mass is zero."""
         return None if material is None else Stated(contact_stiffness(self, material), np.zeros((12, 12)))
 
     @property
@@ -89,7 +89,7 @@ class Contact(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class Hertz:
-    """Hertzian contacts of a preloaded ball: `force` [N], contact radius `spot` [m], `normal` and `tangential` stiffness [N/m].
+    """Hertzian contacts of a preloaded ball: `force` [N], contact radius `spot` [m], `normal` and `tangential` stiffness [N/m] of each.
 
     `normals` (..., c, 3) of the c contacts point from the seat to the ball. `motion` (..., c, 3, 6) maps the twist of the ball's centre to
     the displacement at each contact.
@@ -132,8 +132,8 @@ def hertz(part: Contact, material: Material) -> Hertz:
 def contact_stiffness(part: Contact, material: Material) -> Array:
     """Compute the stiffness (..., 6, 6) about the ball's centre: the sum over all contacts, without contact moments.
 
-    On a flat, rolling and spinning about the contact point are free. About the ball's centre, the tangential stiffness times the radius, or
-    times its square, contributes to the terms for rotations.
+    On a flat, rolling and spinning about the contact point are free. The tangential stiffness times the radius couples translation and
+    rotation of the ball's centre; times the radius squared, it resists rotation.
 
     >>> steel = Material(young=210e9, poisson=0.3, density=7850.0)
     >>> ball = Contact("steel", "steel", radius=0.005, preload=10.0)

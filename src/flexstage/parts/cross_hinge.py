@@ -60,7 +60,7 @@ class CrossHinge(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: leaves are thinner than wide, cross each other, and do not interfere."""
+        """Required: leaves are thinner than wide, cross each other, and do not interfere."""
         yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")
         middle = self.width if self.middle_width is None else self.middle_width

@@ -82,7 +82,7 @@ class Cross(Section):
         return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return Saint-Venant's stress on the leaves' faces plus shear of bending strips, without stress concentration at the corner."""
+        """Return Saint-Venant's stress on the leaves' faces plus the shear stress of leaves in bending; stress concentration is omitted."""
         strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
         return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
 
@@ -103,7 +103,7 @@ def cross(thickness: Number, width: Number) -> Cross:
 
 @dataclass(frozen=True, eq=False)
 class Cruciform(Shaped):
-    """Cruciform torsion hinge of two equal crossed leaves: `length` is along x, the `width` of one leaf along y, of the other along z.
+    """Cruciform torsion hinge of two equal crossed leaves: `length` is along x; one leaf has its `width` along y, the other along z.
 
     Ideal degree of freedom: rotation about x.
     """
@@ -132,5 +132,5 @@ class Cruciform(Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the leaves are thinner than wide."""
+        """Required: the leaves are thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values")

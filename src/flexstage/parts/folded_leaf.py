@@ -56,6 +56,6 @@ class FoldedLeaf(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: leaves thinner than wide, and not thicker than the corner."""
+        """Required: the leaves are thinner than wide, and not thicker than the corner."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")
         yield Order("thickness", self.thickness, self.corner, "the corner", "Make the corner larger", strict=False)

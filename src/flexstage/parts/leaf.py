@@ -91,5 +91,5 @@ class Leaf(Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the leaf is thinner than wide."""
+        """Required: the leaf is thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")

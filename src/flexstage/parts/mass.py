@@ -62,7 +62,7 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
 def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
     """Compute mass properties of the union of solids, in the frame in which the solids are drawn.
 
-    If `meant` contains the same solids at nominal positions, common volumes are computed at the nominal positions.
+    If `meant` specifies nominal positions of the solids, their common volumes are computed there.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)

@@ -163,7 +163,7 @@ class Material(Description):
 
         Beams along x use E along x, and G of the planes xy and xz. For wide leaves, Poisson's ratio in the plate modulus E / (1 - nu^2) is
         -S13 / (S11 S33)^(1/2), with the compliance S in the axes of the part. In directions other than 100, 110 and 111, tension and
-        bending are coupled with shear and twist; the material in part axes omits this coupling.
+        bending are coupled with shear and twist; the returned material omits this coupling.
         """
         if not self.is_cubic:
             return self
@@ -186,7 +186,7 @@ class Material(Description):
         )
 
     def stiffness_tensor(self, rotation: Array) -> Array:
-        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in rotated axes: the columns of `rotation` (..., 3, 3), in the stage.
+        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in rotated axes, the columns of `rotation` (..., 3, 3) in the stage's frame.
 
         The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. With the components q_ai of the crystal's three axes a, and
         d_ij = 1 for i = j, else 0 (Nye 1957):

@@ -40,5 +40,5 @@ class Membrane(Elastic):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the hub is smaller than the rim."""
+        """Required: the hub is smaller than the rim."""
         yield Order("inner", self.inner, self.outer, "the outer diameter", "Exchange both values")

@@ -18,8 +18,8 @@ class Neck(Profiled):
     """Two-axis neck hinge, round or rectangular. The neck's thickness varies along x according to the `profile`.
 
     Without `width` the neck is round: `thickness` is its smallest diameter, and a circular profile gives a toroid. A rectangular neck has
-    `thickness` along y and `width` along z; the profile increases both towards the ends. Ideal degrees of freedom: the three rotations.
-    Torsion is ideally free, because locked torsion would transmit a couple. The elastic models use the torsional stiffness.
+    `thickness` along y and `width` along z; both increase towards the ends as in the profile. Ideal degrees of freedom: the three
+    rotations. Torsion is ideally free, because locked torsion would transmit a couple. The elastic models use the torsional stiffness.
     """
 
     kind: ClassVar[str] = "neck"

@@ -35,6 +35,6 @@ class Notch(Profiled):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the neck is thinner than wide."""
+        """Required: the neck is thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")
         yield from super().orders

@@ -79,6 +79,6 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: the preload is at most the maximum load, and the bias is within the voltage range."""
+        """Required: the preload is at most the maximum load, and the bias is within the voltage range."""
         yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Use a smaller preload", FORCE, strict=False)
         yield from super().orders

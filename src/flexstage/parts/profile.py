@@ -265,7 +265,7 @@ class FreeForm(Contour):
         return 0.0, *inner, _end_slope(steps, rates)
 
     def pieces(self) -> Iterator[tuple[Number, Number, tuple[Number, Number, Number, Number]]]:
-        """Yield start [m], length [m] and coefficients, constant term first, of each piece: a cubic in the fraction of its length."""
+        """Yield start [m], length [m] and coefficients (constant term first) of each piece, a cubic in the fraction of its length."""
         for (left, right), (low, high), (start, end) in zip(*map(pairwise, (self.stations, self.heights, self.slopes)), strict=True):
             step, change = right - left, high - low
             yield left, step, (low, step * start, 3.0 * change - step * (2.0 * start + end), step * (start + end) - 2.0 * change)

@@ -53,7 +53,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: flexures are at most as thick as the middle and fit into the length; fillets fit into steps and flexures."""
+        """Required: flexures are at most as thick as the middle and fit into the length; fillets fit into steps and flexures."""
         yield from super().orders
         half, advice = 0.5 * self.length, "Make the leaf longer or the flexures shorter"
         yield Order("flexure_length", self.flexure_length, half, "half the length", advice)

@@ -87,7 +87,7 @@ class RotaryCoil(Coil):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors of any coil, and a torque constant of zero."""
+        """Errors: as for every `Coil`, or a torque constant of zero."""
         yield from super().faults
         if not np.all(self.torque_constant):
             yield Finding("torque_constant", "must not be zero", 'Use e.g. "0.2 N m/A"')

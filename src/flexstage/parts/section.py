@@ -26,7 +26,7 @@ _ODD_FIFTH_POWERS = 1.00452376279513961613
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """Cross-section: overall `height` along y and `width` along z [m], factor `shear` k of the shear flexibility k / (G A).
+    """Cross-section: overall `height` along y and `width` along z [m], and the factor k (`shear`) of the shear flexibility k / (G A).
 
     Each form of section is a dataclass with its dimensions, which may be arrays and complex. A form implements `area`, `inertia_y`,
     `inertia_z`, `torsion` and `outline`, and may override other properties.
@@ -67,7 +67,7 @@ class Section:
 
     @cached_property
     def sectorial(self) -> Number:
-        """Largest value of the warping function [m^2]: the stress by a bimoment B is B sectorial / C_w."""
+        """Largest value of the warping function [m^2]; a bimoment B causes the stress B / C_w times this value."""
         return 0.25 * self.height * self.width
 
     @property
@@ -98,7 +98,7 @@ class Section:
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the largest shear stress [Pa] of a torque [N m]. Saint-Venant torsion carries its fraction `uniform`, warping the rest."""
+        """Return the largest shear stress [Pa] of a torque [N m]; Saint-Venant torsion carries the fraction `uniform`, warping the rest."""
         raise NotImplementedError
 
     def each(self, function: Callable[[Number], Any]) -> Self:
@@ -151,7 +151,7 @@ class Rectangle(Section):
         return 0.5 * np.array([section.height, section.width]) * [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the Saint-Venant stress in the middle of the longer sides plus the shear of bending strips [Pa]."""
+        """Return the Saint-Venant stress in the middle of the longer sides plus the shear stress of strips in bending [Pa]."""
         short, long = np.minimum(self.height, self.width), np.maximum(self.height, self.width)
         ratio = 0.5 * np.pi * (long / short)[..., None] * _ODD
         crest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * np.exp(-ratio) / (1.0 + np.exp(-2.0 * ratio)) / _ODD**2, axis=-1)

@@ -41,7 +41,7 @@ from flexstage.parts.stated import Stated
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """Required inequality of two values of a part: the value `small` of `field` must be below the value `large`, described by `other`.
+    """Required inequality between two values of a part: `small`, the value of `field`, must be below `large`, which `other` names.
 
     If not `strict`, the two values may be equal.
     """
@@ -73,7 +73,7 @@ class Elastic(Description):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations between the part's values."""
+        """Required inequalities between the part's values."""
         yield from ()
 
     @property
@@ -102,7 +102,7 @@ class Elastic(Description):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors of the part's values, apart from their order relations."""
+        """Errors of the part's values, apart from required inequalities."""
         yield from ()
 
 
@@ -181,7 +181,7 @@ class Shaped(Elastic):
 
 
 class Profiled(Shaped):
-    """Part with a `profile` of cuts that reduce its height on both sides, and for some kinds also its width (see `grown`)."""
+    """Part with a `profile` of cuts that reduce its height on both sides; some kinds also reduce their width (see `grown`)."""
 
     thickness: Number
     profile: Profile
@@ -227,7 +227,7 @@ class Profiled(Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: fillets, or the arc of a V's tip, fit into the length; the stations of a table increase from the middle."""
+        """Required: fillets, or the arc of a V's tip, fit into the length; the stations of a table increase from the middle."""
         if isinstance(self.profile, Filleted):
             advice = "Two fillets require 2 r of the length: increase the length or reduce the radius"
             yield Order("profile.radius", self.profile.radius, 0.5 * self.profile.length, "half the length", advice, strict=False)

@@ -63,7 +63,7 @@ class Spring(Elastic):
 
     @property
     def whole(self) -> Array:
-        """Stiffness (..., 6, 6) about its centre.
+        """Stiffness (..., 6, 6) about the spring's centre.
 
         >>> Spring(stiffness=-2e3).whole.diagonal().tolist()
         [-2000.0, 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -75,7 +75,7 @@ class Spring(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether degrees of freedom and stiffness are equal along and about y and z."""
+        """Whether y and z have the same degrees of freedom and stiffness, in translation and rotation."""
         return is_even(self.free) and turns_into_itself(self.whole)
 
     @property

@@ -18,7 +18,7 @@ _QUARTER: Array = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]
 
 @dataclass(frozen=True, eq=False)
 class Stated:
-    """Specified matrices of a part without a shape, about its centre and in its frame, SI.
+    """Specified matrices of a part without a shape, in SI units, about the part's centre and in its frame.
 
     `stiffness` (..., 6, 6) and the optional viscous `damping` (..., 6, 6) are for motion of the second end relative to the first. The rows
     and columns of `mass` (..., 12, 12) belong to the twists of both ends.

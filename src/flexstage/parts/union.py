@@ -100,7 +100,7 @@ class _Prism:
 
 
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
-    """Yield densities and moments that, added to those of a body's solids, correct for common volumes (most moments are negative).
+    """Yield densities and moments to be added to those of a body's solids, so that common volumes count only once.
 
     A subtracted solid removes its intersection with other solids of the same material: a solid minus a hole is the union of both, minus the
     hole. Raises `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not prisms along one axis.
@@ -303,7 +303,7 @@ def _extruded(section: Moments, low: Array, high: Array) -> Moments:
 
 
 def polygon_moments(corners: Array, height: Array) -> Moments:
-    """Compute moments of a prism with a counter-clockwise polygon (..., n, 2) as mid-plane and this `height` (Green's theorem).
+    """Compute by Green's theorem the moments of a prism of this `height` with a counter-clockwise polygon (..., n, 2) as mid-plane.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> float(polygon_moments(square, np.asarray(2.0)).volume)

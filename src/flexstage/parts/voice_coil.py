@@ -167,7 +167,7 @@ class Coil(ThrustActuator):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: the continuous current does not exceed the peak current."""
+        """Required: the continuous current does not exceed the peak current."""
         advice = "Exchange both values"
         yield Order("continuous_current", self.continuous_current, self.peak_current, "the peak current", advice, CURRENT, strict=False)
 

@@ -42,7 +42,7 @@ class GroupedOptionsCommand(TyperCommand):
 
 
 def default_last(text: str) -> str:
-    """Format the help of an option: the marks of its default and of a required option become sentences at the end.
+    """Format the help of an option: the marks of a default value and of a required option become sentences at the end.
 
     >>> default_last("Model.  [default: lumped]"), default_last("Design file (TOML).  [required]")
     ('Model. Default: lumped.', 'Design file (TOML). Required.')

@@ -70,7 +70,7 @@ class Helper:
         return None if self._worker is None else self._worker.process.pid
 
     def busy(self, urgency: Urgency) -> float:
-        """Return the time since the start of the present task [s]; zero if the task has another urgency."""
+        """Return the time since the start of the present task [s]; zero if the present task has another urgency."""
         return time.monotonic() - self._since if self._now is not None and self._now[0].urgency == urgency else 0.0
 
     async def ask(

@@ -105,7 +105,7 @@ class Jobs:
         return False
 
     def answer(self, number: int | None, pair: str) -> str:
-        """Return the design that a job found for a pair; refused for an unknown job or pair."""
+        """Return the design that a job found for a pair of architecture and actuator; refused for an unknown job or pair."""
         job = self._jobs.get(number or 0)
         if job is None or pair not in job.designs:
             raise refuse(pair, "unknown answer", "Choose an answer of a design job")

@@ -118,8 +118,8 @@ class ModeShape:
 class SolidMode:
     """A platform mode by finite elements: `error` is the estimated relative error of its frequency, `motion` the data for a viewer.
 
-    `theory` is the number of the paired mode of theory, null without one. `theory_frequency` [Hz] is the frequency of this mode,
-    `difference` its relative difference from finite elements, and `assurance` the modal assurance criterion of the pair.
+    `theory` is the number of the paired mode of the lumped model; null without a pair. `theory_frequency` [Hz] is the frequency of the
+    lumped mode, `difference` its relative difference from finite elements, and `assurance` the modal assurance criterion of the pair.
     """
 
     number: int
@@ -233,7 +233,7 @@ class Snippet:
 
 @dataclass(frozen=True)
 class PairRow:
-    """A pair of a design job: its goal, or the reason for its failure. `file` is the design's file name, or empty."""
+    """A pair of a design job (architecture and actuator): its goal, or the reason for its failure, and its file name, or empty."""
 
     architecture: str
     actuator: str
@@ -365,7 +365,7 @@ class Respond:
 
 @dataclass(frozen=True)
 class Jog:
-    """Request for the matrices between strokes, platform and gauges."""
+    """Request for the linear maps between strokes, platform motion and gauge readings."""
 
     id: int
 
@@ -554,7 +554,7 @@ class JobForm:
 
 @dataclass(frozen=True)
 class Specify:
-    """Check the `text` of a specification, in which any `values` of the form (TOML) replace values.
+    """Check the `text` of a specification, in which `values` (TOML) from the form replace values.
 
     An empty text is replaced by the text of `file` in the folder. Without a file, the last text is used (initially an example).
     """
@@ -611,10 +611,10 @@ class Welcome:
 class State:
     """The text and its contents, sent to all pages after every change. `digest` is the digest of the file on disk.
 
-    `sound`: the design has no error; otherwise, `problems` lists the errors, and numbers belong to the last text without errors. `changed`
-    is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned designs.
-    `links` contains the line of each link of the expanded stage. `unprotected` is the reason why unsaved changes would be lost if the
-    server ended. `drafts` lists unsaved changes of earlier servers.
+    `sound`: the design has no error; otherwise, `problems` lists the errors, and all numbers are from the last text without errors.
+    `changed` is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned
+    designs. `links` contains the line of each link of the expanded stage. `unprotected` is the reason why unsaved changes would be lost if
+    the server ended. `drafts` lists unsaved changes of earlier servers.
     """
 
     revision: int
@@ -761,7 +761,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Motion:
-    """Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
+    """Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` the actuator inputs per unit twist.
 
     `gauges` contains the readings per unit input; `ideal` is the platform twist per unit input of the ideal stage. `stress` (links x
     inputs) is in Pa per unit input; `rest` is the stress without strokes. The stress of a link is at most `rest` plus the sum of the

@@ -123,7 +123,7 @@ def _drawn_body(mechanism: Mechanism, name: str) -> str:
 
 
 def motion(text: str, file: str, to: int, revision: int) -> Motion:
-    """Compute the linear maps between inputs, platform and gauges, with bounds of the stress of every link."""
+    """Compute the linear maps between inputs, platform motion and gauge readings, and the stress of every link."""
     known, attempt = bench(text, file), Attempts()
     model = known.model
     inputs = model.actuators
@@ -144,7 +144,7 @@ def motion(text: str, file: str, to: int, revision: int) -> Motion:
 
 
 def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
-    """Compute the stage at given strokes and forces, which are relative to the bias, with exceeded limits."""
+    """Compute motion, readings and stress for strokes and forces relative to the bias, and list exceeded limits."""
     known = bench(text, file)
     names, gauges = known.model.actuators, tuple(known.assembly.gauges)
     strange = [name for name in inputs if name not in names]

@@ -86,7 +86,7 @@ class Timer:
 
 @SESSION.keep(8)
 def bench(text: str, file: str) -> StageResults:
-    """Return the analysis of a design."""
+    """Return the results of a design, which are computed on first use."""
     return bench_of(design(text, file))
 
 
@@ -278,7 +278,7 @@ def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
 
 
 def strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
-    """Return, for every link, its fraction (k,) of the strain energy in each of k shapes (n, k)."""
+    """Return the fraction (k,) of the strain energy in every link, for k shapes (n, k)."""
     parts = {
         name: np.einsum("ik,ij,jk->k", each, model.stiffness[name].law, each) for name, each in part_deformation(model, shapes).items()
     }

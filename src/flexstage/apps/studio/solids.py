@@ -30,7 +30,7 @@ _VERIFIED = 0.01
 
 
 def solid_modes(text: str, file: str, to: int, revision: int) -> SolidModes:
-    """Return the platform modes by finite elements, each with the paired mode of theory."""
+    """Return the platform modes by finite elements, each with the paired mode of the lumped model."""
     known = bench(text, file)
     found = fea_modes_from_cache(known.mechanism, Cache())
     if found is None:

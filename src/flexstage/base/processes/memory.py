@@ -17,7 +17,7 @@ ALWAYS = 3e7
 def require_memory(where: str, what: str, needed: float, fits: Callable[[float], str]) -> None:
     """Raise `DesignError` if `needed` memory [bytes] exceeds the available memory.
 
-    `what` names the data in the message. `fits` returns a hint for the available memory [bytes].
+    `what` names the data in the message. `fits` is a function that returns a hint for an amount of available memory [bytes].
 
     >>> require_memory("stage", "its matrices", 1e3, lambda there: f"{there / 1e6:.0f} bodies would fit")
     """

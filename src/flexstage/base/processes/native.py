@@ -73,7 +73,7 @@ def sources_digest(source: Path) -> str:
 
 
 def library_path(source: Path, lanes: Lanes) -> Path:
-    """Return the path of a kernel's library for these lanes.
+    """Return the path of a kernel's library for these vector lanes.
 
     >>> library_path(KERNELS[0], Lanes("sse2", (), frozenset(), ())).name
     'kernel-sse2.so'

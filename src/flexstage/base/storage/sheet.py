@@ -34,7 +34,7 @@ class _Sort(Enum):
 
 @dataclass(frozen=True)
 class Sheet:
-    """Table of values: `names` are columns with the row names (empty for a single row), `columns` the values of every field by row."""
+    """Table of values: `names` are the columns of row names (empty for a single row), `columns` the column of values of each field."""
 
     names: Mapping[str, tuple[Any, ...]]
     columns: Mapping[Field, tuple[Any, ...]]
@@ -73,7 +73,7 @@ def rows_of(source: Any) -> Sheet:
 
 
 def owner_names(source: Any) -> dict[str, tuple[Any, ...]]:
-    """Return columns with the row names of a mapping, one column for each element of its keys; no columns for another value.
+    """Return columns with the row names of a mapping, one column for each element of its keys; empty for any other value.
 
     >>> owner_names({("raster", "B1"): 0, ("raster", "B2"): 0})
     {'name': ('raster', 'raster'), 'name 2': ('B1', 'B2')}

@@ -65,11 +65,11 @@ class History:
         return self._step(text, (*self.past, self.text)[-_MOST:], (), page)
 
     def undo(self, page: int) -> History:
-        """Return the history with the previous text as the present one."""
+        """Return the history with the previous text restored."""
         return self._step(self.past[-1], self.past[:-1], (self.text, *self.future), page) if self.past else self
 
     def redo(self, page: int) -> History:
-        """Return the history with the next undone text as the present one."""
+        """Return the history with the next undone text restored."""
         return self._step(self.future[0], (*self.past, self.text), self.future[1:], page) if self.future else self
 
     def _step(self, text: str, past: tuple[str, ...], future: tuple[str, ...], page: int) -> History:
