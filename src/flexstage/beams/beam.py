@@ -17,7 +17,7 @@ from flexstage.parts.section import Section
 class Beam:
     """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), for (x, y, z, rx, ry, rz).
 
-    The flexibilities are 1/(E A), k/(G A) with the shear factor k for y and for z, the twist rate per torque, 1/(E I_y) and 1/(E I_z). The
+    The flexibilities are 1/(E A), k/(G A) for y and for z (shear factor k), the twist rate per torque, 1/(E I_y) and 1/(E I_z). The
     inertias are rho A for x, y and z, and rho I_p, rho I_y, rho I_z for the rotations, with the density rho.
     """
 
@@ -30,7 +30,7 @@ class Beam:
     def diagonal(self) -> Array:
         """Compute the diagonal (..., 6) of the compliance about the centre.
 
-        C_x, C_rx, C_ry, C_rz are integrals of the flexibility f; C_y = integral of f_y + x^2 f_rz, C_z = integral of f_z + x^2 f_ry.
+        C_x, C_rx, C_ry and C_rz are the integrals of the flexibilities f; C_y is that of f_y + x^2 f_rz, and C_z that of f_z + x^2 f_ry.
         """
         weight = 2.0 * self.points.rule.weights * self.points.rate
         plain = (weight[..., None, :] @ self.flexibility)[..., 0, :]
@@ -82,7 +82,7 @@ def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting
 
 
 def inertia(section: Section, density: Array) -> Array:
-    """Compute the inertia per length (..., m, 6) of a section, including rotary inertia; density of shape (..., 1).
+    """Compute the inertia per length (..., m, 6) of a section, including rotary inertia; `density` has the shape (..., 1).
 
     >>> from flexstage.parts.section import Rectangle
     >>> inertia(Rectangle(np.ones(1), np.ones(1)), np.array([12.0])).tolist()

@@ -32,7 +32,7 @@ _EVERY: Array = np.arange(6)
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` DOFs.
+    """Stiffness and constraints of a link: `stiffness` (..., 6, 6), with zeros for free and locked DOFs, and the `locked` DOFs.
 
     `inner` (..., m) [1/s^2] are the squared angular frequencies of m mass-normalised fixed-end modes (default: no modes). These modes are
     additional coordinates of the lumped model. The mass matrix of the link has the shape (..., 12 + m, 12 + m): first the motions of both
@@ -84,9 +84,9 @@ def law(part: Part, material: Material | None) -> Law:
 
     A `Joint` has no stiffness and locks all DOFs that are not free. Ordinary parts lock nothing.
 
-    For a `Restricted` part, the stiffness matrix K = C^-1, the inverse of the compliance, is reduced. Rows and columns of locked DOFs
-    become zero. Free DOFs f are condensed: the stiffness of the elastic DOFs e is K_ee - K_ef K_ff^-1 K_fe, with the blocks of K. Free DOFs
-    that have no stiffness need no condensation.
+    For a `Restricted` part, the stiffness matrix K, the inverse of the compliance, is reduced: rows and columns of locked DOFs become zero.
+    Free DOFs f are condensed: the stiffness of the elastic DOFs e is K_ee - K_ef K_ff^-1 K_fe, with the blocks of K. Free DOFs that have no
+    stiffness need no condensation.
 
     >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
     True

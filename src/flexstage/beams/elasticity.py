@@ -78,14 +78,14 @@ Law = Callable[[HingeDimensions, Numbers], Array]
 
 
 def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the tensile compliance of a notch, with the fitted compliance of its roots; restrained contraction reduces it."""
+    """Compute the tensile compliance of a notch and its roots (fitted), reduced by restrained contraction."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
 
 
 def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the transverse compliance of a notch: root compliance, bending with restrained contraction, and the block.
+    """Compute the transverse compliance of a notch: bending with restrained contraction, shear, and fitted compliance of the roots.
 
     Beam theory treats the block as a beam. A wide block deforms less, like a plate; the difference is subtracted.
     """
@@ -113,7 +113,7 @@ def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def fillet_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the transverse compliance of a fillet: plate action if wide, root rotation with its lever arm, block as in `notch_y`."""
+    """Compute the transverse compliance of a fillet: bending (plate action if wide), shear, root rotation, and block as in `notch_y`."""
     bent = _plate_share(hinge, shear_factor, p[3], p[4]) * (hinge.beam[..., 1] - hinge.shear_share)
     turned = _root_rotation(hinge, p) * (hinge.half - p[2] * hinge.along) ** 2
     return bent + hinge.shear_share * (1.0 + p[5] * hinge.root) + turned - _block_as_plate(hinge, p[6], p[7])

@@ -46,7 +46,7 @@ class Plate:
 
 @dataclass(frozen=True, eq=False)
 class Bending:
-    """Part of a `length` that bends in a plane: `rigidity` E I, `shear` stiffness, and per length its `mass` and `rotary` inertia."""
+    """Part that bends in a plane: `length`, `rigidity` E I, `shear` stiffness, and `mass` and `rotary` inertia per length."""
 
     length: Number
     rigidity: Number
@@ -58,7 +58,7 @@ class Bending:
 
 @dataclass(frozen=True, eq=False)
 class Torsion:
-    """Part of a `length` that twists, with torsional `rigidity` G J, and `inertia` about its axis per length.
+    """Part that twists: `length`, torsional `rigidity` G J, and `inertia` about its axis per length.
 
     `warping` is E C_w (absent: free warping), and `warping_inertia` rho C_w, with Young's modulus E, density rho and the warping constant
     C_w. For a `plate` of width b and plate rigidity D, the warping stiffness is D b^3 / 12, with polynomials of higher degree across the
@@ -78,8 +78,7 @@ class FixedEndModes:
     """Modes of unit modal mass: squared angular frequencies `squares` (..., n) [1/s^2], and the motion of sections.
 
     `moved` (..., n, s) are the displacements of s sections in n modes, and `turned` (..., n, s) their rotations. `axis` is 1 for
-    deflections along y, 2 along z, 3 for twist about x. For deflections, the rotation of a section has the sign of the slope; for twist
-    there is none.
+    deflections along y, 2 along z, 3 for twist about x. For deflections, `turned` has the sign of the slope; for twist, it is `None`.
     """
 
     axis: int

@@ -27,9 +27,9 @@ _CROSS[[0, 1, 2], [1, 2, 0], [2, 0, 1]], _CROSS[[0, 1, 2], [2, 0, 1], [1, 2, 0]]
 class Geometric:
     """Geometric stiffness of a part for the twists of both ends, taken at its centre, and for k inner shapes of twist and bending.
 
-    `per_force` (..., 6, 12 + k, 12 + k) is the stiffness for a unit of each component of the wrench on the second end. The wrench is taken
-    at the centre, in the link frame. `inner` (..., k) are the elastic stiffnesses of the inner shapes, which do not move the ends. `half`
-    (...) is half the length [m].
+    `per_force` (..., 6, 12 + k, 12 + k) is the geometric stiffness per unit of each component of the wrench on the second end. The wrench
+    is about the centre, in the link frame. `inner` (..., k) are the elastic stiffnesses of the inner shapes, which do not move the ends.
+    `half` (...) is half the length [m].
     """
 
     per_force: Array

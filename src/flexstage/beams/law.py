@@ -57,8 +57,8 @@ def _no_family(_: Any) -> str | None:
 class PartLaw:
     """Law of a kind of part: functions of a part, or of a part and its material (`None` if `needs_material` is false).
 
-    Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. `diagonal` (..., 6) replaces the beam's compliance
-    for plates. All 6x6 matrices are about the centre. A part without a beam has these entries instead:
+    Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. For plates, `diagonal` (..., 6) replaces the
+    beam's compliance. All 6x6 matrices are about the centre. These entries describe a part without a beam:
 
     - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some DOFs;
     - `material_stiffness` (..., 6, 6) instead of `stiffness` if it depends on the material;
@@ -67,11 +67,11 @@ class PartLaw:
     Optional entries:
 
     - `damping`: the viscous damping (..., 6, 6) [N s/m];
-    - `twisting_load`: the compression [N] at which a column of this kind buckles in twist, below Euler's load;
+    - `twisting_load`: the compression [N] at which a column buckles in twist, for kinds where it can be below Euler's load;
     - `concentration`: the stress concentration factor of the part's notches; if this factor is missing or `None`, the stress is unknown;
     - `ranges`: ratios of dimensions with the intervals that were compared with finite elements;
     - `family`: the name of the fitted function for the model error;
-    - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations from -1 to 1, as fractions of the half length.
+    - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations x divided by the half length (-1 to 1).
     """
 
     beam: Callable[[Any, Any], Beam] | None = None

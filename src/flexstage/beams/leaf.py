@@ -101,7 +101,7 @@ def _twisting(part: Leaf, points: Stations, section: Section, material: Material
 
 
 def leaf_modes(part: Leaf, material: Material, places: Array) -> tuple[FixedEndModes, ...]:
-    """Compute the fixed-end modes of a leaf: bending along y, and twist. `places` are stations (s,), x over the half length.
+    """Compute the fixed-end modes of a leaf: bending along y, and twist. `places` (s,) are values of x divided by the half length.
 
     The leaf is a plate with restrained warping, unless its `section` and `ends` specify otherwise.
 

@@ -27,7 +27,7 @@ def mass(part: Part, material: Material | None) -> Array:
     X_x transports a twist from the centre to x. S is the compliance accumulated from the first end to x, and K = S(end)^-1. The mass is M =
     integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma]. The mass includes the
     material between the ends of the profile. In a rigid motion, the inertia of the solid is exact. A `ComplianceMatrix` part has half its
-    mass at each end; `Joint` and `Restricted` parts have none.
+    mass at each end; `Joint` and `Restricted` parts are massless.
 
     For a part with m fixed-end modes, the matrix is (..., 12 + m, 12 + m). The matrix contains the unit masses of the modes, and the
     coupling of the modes to the motion of the ends.

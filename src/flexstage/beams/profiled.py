@@ -18,7 +18,7 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
     R is a^2/c for an ellipse with the semi-axes a along and c across the hinge, and the fillet radius for a corner-filleted hinge. A
     straight hinge has K_t = 1, because its corners are not specified.
 
-    Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere), are:
+    For t/2R up to 1, the errors relative to plane-stress finite elements with full-height blocks (tests/elsewhere) are:
 
     - circular notch: in bending +1 to +2 %, in tension 0 to -13 %;
     - fillets: in bending +3 to +7 %, in tension -2 to -10 %.

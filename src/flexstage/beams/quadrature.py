@@ -29,7 +29,7 @@ _FEW_POINTS = 15
 
 @dataclass(frozen=True, eq=False)
 class Rule:
-    """Composite quadrature rule on unit pieces: `weights` (m,), and `running` (m, m), the integrals from the first point to each point."""
+    """Composite quadrature rule for pieces of unit length: `weights` (m,), and `running` (m, m) for integrals from the first point."""
 
     weights: Array
     running: Array
@@ -37,7 +37,7 @@ class Rule:
 
 @dataclass(frozen=True, eq=False)
 class Stations:
-    """Points of the half hinge: `position` x >= 0 [m], `rate` dx/du for the variable u of the rule, added height `growth` w [m].
+    """Points of half a hinge: `position` x >= 0 [m], `rate` dx/du with the rule's variable u, height `growth` w [m] of the cut.
 
     All arrays have the shape (..., m).
     """
@@ -48,11 +48,11 @@ class Stations:
     rule: Rule
 
     def whole(self, values: Array) -> Array:
-        """Integrate an even function given at the stations (..., m) over the whole hinge -> (...)."""
+        """Integrate an even function, given at the stations (..., m), over the whole hinge."""
         return 2.0 * np.sum(values * self.rate * self.rule.weights, axis=-1)
 
     def running(self, values: Array) -> Array:
-        """Integrate from the centre to each station (..., m) -> (..., m)."""
+        """Integrate a function (..., m) from the centre to each station."""
         return self.runnings(values)[0]
 
     def runnings(self, *values: Array) -> tuple[Array, ...]:

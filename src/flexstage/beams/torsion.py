@@ -66,12 +66,12 @@ def free_twist(section: Section, shear: Array) -> Twisting:
 def constrained_twist(section: Section, points: Stations, young: Array, shear: Array) -> Twisting:
     """Compute the twist of a hinge with restrained warping; moduli `young` E and `shear` G [Pa], shape (..., 1).
 
-    With the symbols of the module docstring, elimination of the twist rate phi' gives (E C_w theta')' - g theta + f = 0 for the warping
-    theta, with f = S r / (J + S r^2) and g = G S J / (J + S r^2). The integral equation theta = A (f - g theta) is solved, where the
+    Elimination of the twist rate phi' gives (E C_w theta')' - g theta + f = 0 for the warping theta. With the symbols of the module
+    docstring, f = S r / (J + S r^2) and g = G S J / (J + S r^2). The integral equation theta = A (f - g theta) is solved, where the
     operator A integrates twice by the quadrature rule of the stations.
 
-    If the section is constant and the stations resolve its end zones, theta = f / g (1 - cosh(kx) / cosh(kL/2)), with the length L and k^2
-    = g / (E C_w).
+    If the section is constant and the stations resolve its end zones, theta = (f / g) (1 - cosh(kx) / cosh(kL/2)), with the length L and
+    k^2 = g / (E C_w).
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.section import Rectangle

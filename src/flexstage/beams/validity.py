@@ -42,8 +42,9 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
 
     The errors are correct within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional finite elements.
 
-    - Errors of notches include the roots on blocks of full height and width. Straight notches, leaves and rods end at rigid faces.
-    - Along z and about x, the error of a notch is unknown: its own compliance is too small compared with that of the blocks.
+    - The error of a notch includes the compliance of its roots, on blocks of full height and width. Straight notches, leaves and rods end
+      at rigid faces.
+    - Along z and about x, the error of a notch is unknown, because the blocks at its ends are much more compliant.
     - The error of parts with a specified matrix is not estimated.
 
     >>> from flexstage.parts.notch import Notch

@@ -132,8 +132,8 @@ def hertz(part: Contact, material: Material) -> Hertz:
 def contact_stiffness(part: Contact, material: Material) -> Array:
     """Compute the stiffness (..., 6, 6) about the ball's centre: the sum over all contacts, without contact moments.
 
-    On a flat, rolling and spinning about the contact point are free. The tangential stiffness times the radius couples translation and
-    rotation of the ball's centre; times the radius squared, it resists rotation.
+    On a flat, rolling and spinning about the contact point are free. The tangential stiffness times the radius couples rotation with
+    translation of the ball's centre; times the radius squared, it resists rotation.
 
     >>> steel = Material(young=210e9, poisson=0.3, density=7850.0)
     >>> ball = Contact("steel", "steel", radius=0.005, preload=10.0)

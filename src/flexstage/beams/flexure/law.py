@@ -28,8 +28,8 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 class Resolution(CheckedFields):
     """Discretisation of a flexure: numbers of modes and points.
 
-    `twist`, `across` and `bending` are the numbers of modes of twist and of bending about y and z. `fields` are the numbers of line loads
-    on the two plate fields; each load gives one mode. `points` is the number of points along the flexure.
+    `twist`, `across` and `bending` are the numbers of modes in twist, in bending about y, and in bending about z. `fields` are the numbers
+    of modes of the plate fields a2 and a4, each the response to a line load. `points` is the number of points along the flexure.
     """
 
     twist: int = 6
@@ -47,21 +47,21 @@ STRESSES = Resolution(twist=3, across=4, bending=4)
 
 @dataclass(frozen=True, eq=False)
 class FlexureLaw:
-    """Tables of a flexure (docs/nonlinear.md, 3). The leading axes are flexures with equal numbers of modes.
+    """Tables of a flexure (docs/nonlinear.md, 3). The leading axes (...) index flexures with equal numbers of modes.
 
-    - `form` (..., q, q): second derivative of the quadratic energy with respect to the q amplitudes: k of curvature, then e of plate
-      fields.
-    - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures due to unit amplitudes, at the points of the integration rule
-      and of the rotation steps.
-    - `plate` (..., n, 2, e): the plate fields a2 and a4 due to unit amplitudes, at the points.
-    - `compliance` (..., n, 3): compliances in stretch and in shear along y and z, times the bending rigidity, divided by L^2.
+    - `form` (..., q, q): second derivative of the quadratic energy with respect to the q amplitudes: first k of curvature modes, then e of
+      plate modes.
+    - `modes` (..., n, 3, k): three curvatures due to unit amplitudes, at the n points of the integration rule; `inner` (..., 3 (n + 1), 3,
+      k): the same at the points of the rotation steps.
+    - `plate` (..., n, 2, e): the plate fields a2 and a4 (bending across the width) due to unit amplitudes, at the n points.
+    - `compliance` (..., n, 3): flexibilities in tension and in shear along y and z, times the bending rigidity, divided by L^2.
     - `trapeze` (...): I_p / (A L^2), with the polar second moment I_p and area A of the section, and the length L.
     - `stretch` (..., 2): the stiffness against Gaussian curvature.
-    - `length` L [m], and bending `rigidity` about z [N m^2], with which the tables are dimensionless.
+    - `length` L [m], and bending `rigidity` about z [N m^2]; they make the tables dimensionless.
     - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].
     - `half` (..., 2): half thickness and half width [m].
     - `natural` (..., 2): natural curvatures about z and across the width, times the length.
-    - `rest` (..., q): the negative first derivative of the quadratic energy, due to the natural curvatures.
+    - `rest` (..., q): the negative first derivative of the energy with respect to the amplitudes, due to the natural curvatures.
     """
 
     length: Array

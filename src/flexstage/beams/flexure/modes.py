@@ -75,10 +75,10 @@ def slopes(count: int, places: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """Integrals across the width b = 1: of products of the shapes phi_j = P_j(2 z) / 12 (Legendre polynomials P_j) and their derivatives.
+    """Integrals of the shapes phi_j = P_j(2 z) / 12 (Legendre polynomials P_j) and their derivatives across the width b = 1.
 
-    The products of `plain` to `curling` are, in order, phi phi, phi' phi', phi'' phi'', phi phi'' and z phi''. `turning` contains the
-    integrals of phi'.
+    The integrands are phi phi (`plain`), phi' phi' (`sloped`), phi'' phi'' (`curved`), phi phi'' (`mixed`), z phi'' (`curling`) and phi'
+    (`turning`).
     """
 
     plain: Array

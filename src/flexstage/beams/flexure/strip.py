@@ -31,11 +31,11 @@ STRETCH_TWO, STRETCH_FOUR = 1.0 / 720.0, 1.0 / 1296.0
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """Modes of the fields a2 and a4 of a leaf with one amplitude per mode (docs/nonlinear.md, 11).
+    """Modes of a leaf's plate fields a2 and a4, the amplitudes of two shapes across its width (docs/nonlinear.md, 11).
 
     Lengths are divided by the leaf's length L, energies by D b / L with the plate stiffness D and the width b. `form` (..., e, e) is the
-    quadratic form of the energy in the e amplitudes. `values` (..., 2, e, n) are a2 and a4 at the n points of a rule. `coupling` (..., 2,
-    e, k) are the integrals of a2 and a4 times the Legendre polynomials P_k, for all k < n.
+    quadratic form of the energy of e modes. `values` (..., 2, e, n) are a2 and a4 at the n points of a rule. `coupling` (..., 2, e, n) are
+    the integrals of a2 and a4 times the first n Legendre polynomials.
     """
 
     form: Array
