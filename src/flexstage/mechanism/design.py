@@ -43,7 +43,7 @@ def design(mechanism: Mechanism, place: int, share: float = 0.0) -> Mechanism:
 
 
 def step_size(mechanism: Mechanism) -> float:
-    """Return the `share` for `design` that changes each number by 1e-4 at most (relative); zero if all numbers are real.
+    """Return the `share` for `design` that changes each number by at most 1e-4 of its value; zero if all numbers are real.
 
     >>> step_size(Mechanism("stage"))
     0.0

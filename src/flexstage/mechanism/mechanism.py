@@ -88,7 +88,7 @@ class Link(Description):
 
     @property
     def centre(self) -> Vector:
-        """Centre of the part: `at`, or the midpoint of both ends."""
+        """Centre of the part: `at`, or the midpoint between both ends."""
         return middle(self.start, self.end) if self.at is None and self.start and self.end else self.at or ORIGIN
 
     @property
@@ -195,7 +195,7 @@ class Force(Description):
 
 @dataclass(frozen=True, eq=False)
 class StrokePath(Description):
-    """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack, a load) varies between the two values of `to`.
+    """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack or a load) varies between the two values of `to`.
 
     The values of `to` are strings with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold`
     specifies the constant conditions, for example:
@@ -220,7 +220,7 @@ class ModalDamping(Description):
 
 @dataclass(frozen=True, eq=False)
 class StructuralDamping(Description):
-    """Structural damping, only in the frequency domain: a part's stiffness is multiplied by 1 + j eta, eta its material's loss factor."""
+    """Structural damping, only in the frequency domain: stiffness is multiplied by 1 + j eta, with the loss factor eta of the material."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -315,7 +315,7 @@ def every_body(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:
-    """Return the gauges that have a pose, without gauges on links and sums of gauges.
+    """Return the gauges that have a pose: all except gauges on links and sums of gauges.
 
     >>> list(posed({"D": GaugeSum({"S1": 1.0, "S2": -1.0}), "SG": LinkProbe("strain", "B1/pzt")}))
     []

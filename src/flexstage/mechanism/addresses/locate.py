@@ -26,8 +26,8 @@ class Place:
     """Resolved address of a value.
 
     Without `owners`, `path` is the full path from the root of the description. For an override, `owners` are the units and instances with
-    overrides, in order of increasing precedence (`horizontal/front`, `B2/front`). With `owners`, the `path` begins at the link (`in_link`,
-    for instance `at.x`) or at the link's part. For a misalignment (`shift.x`), `owners` contains the instance or gauge.
+    overrides, in order of increasing precedence (`horizontal/front`, `B2/front`). With `owners`, the `path` begins at the link if `in_link`
+    (for instance `at.x`), else at the link's part. For a misalignment (`shift.x`), `owners` contains the instance or gauge.
     """
 
     owners: tuple[str, ...]
@@ -42,7 +42,7 @@ class Place:
 
     @property
     def address(self) -> str:
-        """Full address of the value, without the level `part` between a link's restricted part and the part inside it."""
+        """Full address of the value; the level `part` between a link's restricted part and the part inside it is omitted."""
         inside = bool(self.owners) and not self.in_link and self.path[:1] == ("part",)
         path = self.path[:2] if self.number else self.path
         return ".".join((*self.owners[-1:], *path[inside:]))

@@ -81,7 +81,7 @@ def _field_names(kind: type) -> Mapping[str, str]:
 
 
 def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
-    """Return the paths to every member with this name: directly in the value, else in its nested descriptions and tables.
+    """Return the paths to all members with this name: members of the value itself, else of its nested descriptions and tables.
 
     >>> completions((1.0, 2.0), "y")
     (('y',),)

@@ -74,7 +74,7 @@ class PlacedBody:
 
     @cached_property
     def mass(self) -> MassProperties | None:
-        """Mass properties of the body and of bodies that belong to it (`of`); `None` without any mass."""
+        """Mass properties of the body together with bodies that belong to it (`of`); `None` without any mass."""
         return _mass(self.drawn, self.materials)
 
     @cached_property
@@ -89,7 +89,7 @@ class PlacedBody:
 
     @cached_property
     def solids(self) -> Mapping[str, PlacedSolid]:
-        """Outlines by address, including those of bodies that belong to it (`platform.plate`, `B1/pad.lug`)."""
+        """Outlines of the body, and of bodies that belong to it, by address (`platform.plate`, `B1/pad.lug`)."""
         return _placed_solids(self.drawn)
 
 
@@ -112,11 +112,11 @@ class PlacedLink:
 
     @property
     def described(self) -> PlacedLink:
-        """Link of the description: the link itself, or for a member, the link of its compound."""
+        """Link as in the description: the link itself; for a member of a compound, the compound's link."""
         return self.of or self
 
     def joints(self, body: str) -> tuple[Array, ...]:
-        """Return the positions (..., 3) of the joints with a body: the link's centre."""
+        """Return the positions (..., 3) of joints with a body: the link's centre, or none if the link does not join the body."""
         return (self.frame.position,) if body in self.joins else ()
 
 
@@ -151,8 +151,8 @@ class PlacedSuperelement:
     def welds(self) -> Iterator[PlacedLink]:
         """Yield joints from the body of the first port to the body of each other port, for the ideal model.
 
-        A joint is rigid, except for degrees of freedom that a link with two ports specifies as free. Ports on the body of the first port
-        have no joint.
+        A joint is rigid, except for degrees of freedom that a link with two ports specifies as free. Another port on the body of the first
+        port has no joint.
         """
         first, *others = self.ports
         free = self.link.free or ()
@@ -170,8 +170,8 @@ class Assembly:
 
     If a circuit connects several force actuators, `actuators` contains the first link of the circuit. `circuits` maps every actuator's link
     to its input and sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in
-    `superelements` instead of `links`, because they join any number of bodies. `bodies` excludes bodies that belong to another body (`of`):
-    their solids belong to the owner. Solids of the ground are in `ground`.
+    `superelements` instead of `links`, because they join any number of bodies. `bodies` omits bodies that belong to another body (`of`),
+    because their solids belong to that body. Solids of the ground are in `ground`.
     """
 
     bodies: Mapping[str, PlacedBody]
@@ -265,7 +265,7 @@ def _polar_frame(pattern: Polar, angle: Number) -> Frame:
 
 
 def expand(mechanism: Mechanism) -> Assembly:
-    """Expand a description into bodies and links: units placed by pattern, overrides applied, frames in the stage's frame.
+    """Expand a description into bodies and links: place units by pattern, apply overrides, transform frames to the stage's frame.
 
     The description must have passed its checks. A platform without a specified reference point has its centre of mass as reference point.
 
@@ -451,7 +451,7 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
 def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
     """Return the bodies at a link's ends or ports; a body with `of` is replaced by its owner.
 
-    `copy` is the instance of the link's unit, `own` are the names of the unit's bodies.
+    For a link of a unit, `copy` is the unit's instance, and `own` are the names of the unit's bodies.
 
     >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
     >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})

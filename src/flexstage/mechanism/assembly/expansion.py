@@ -86,10 +86,10 @@ def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
 
 
 def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
-    """Return the ground's material: as requested by `asked` (`none`: no expansion), as in the description, or as in parts on the ground.
+    """Return the ground's material: `asked` (`none`: no expansion), else as in the description, else the material of parts on the ground.
 
-    The parts on the ground are its outlines or, without outlines, its links; they must all have the same material. Raises `DesignError` for
-    parts of different materials, and without any material.
+    The parts on the ground are its outlines or, without outlines, its links; they must all have the same material. Raises `DesignError` if
+    their materials differ, or without any material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ground_of(double_triangle())

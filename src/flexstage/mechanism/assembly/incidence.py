@@ -40,7 +40,7 @@ class Layout:
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the coordinates, `platform.x` to `B6/pole.rz`, then `B1/leaf.mode1` and so on."""
+        """Names of the coordinates: of bodies, such as `platform.x` and `B6/pole.rz`, then of modes, such as `B1/leaf.mode1`."""
         twists = (f"{body}.{component}" for body in self.bodies for component in COMPONENTS)
         return (*twists, *(f"{link}.mode{number + 1}" for link, count in self.inner.items() for number in range(count)))
 

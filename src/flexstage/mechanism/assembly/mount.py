@@ -54,9 +54,9 @@ def mount(
     """Return the stage with another stage, `carried`, mounted on its body `on`. The body `on` replaces the ground of `carried`.
 
     Bodies, links, units, instances, parts, gauges and loads of the carried stage get the names `name/...`; numbers do not change.
-    Overrides, tags and temperatures of the carried stage are kept, and if `on` is the ground, also the ground's material. Other properties
-    of the carried stage as a whole (gravity, damping, requirements, envelope, formulas) are dropped. If `platform`, the carried stage's
-    platform becomes the platform of both (default: true if the stage has no body `platform`).
+    Overrides, tags and temperatures of the carried stage are kept; if `on` is the ground, so is the material of the carried ground. Other
+    properties of the carried stage as a whole (gravity, damping, requirements, envelope, formulas) are dropped. If `platform`, the carried
+    stage's platform becomes the platform of the result (default: true if the stage has no body `platform`).
 
     Raises `DesignError` for name clashes, an unknown body, a mirrored pose, or different expansion or temperature of a common ground.
 

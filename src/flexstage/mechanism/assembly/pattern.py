@@ -54,9 +54,9 @@ class Polar(Description):
     """Polar pattern: instances at equal steps on a circle around the stage's z axis.
 
     `first` is the *position angle* of the first instance, from x towards y. `facing` is the direction of each instance's x axis, which is
-    then rotated by `turn` about z. Each instance's z axis is the stage's z axis (for `InstanceOrientation.AXIS`: x up, z inward). `step` is
-    the angle between instances (default: equal division of a full circle). `mirror` is the normal of a mirror plane through the stage's
-    origin; all instances are then mirror images.
+    then rotated by `turn` about z. Each instance's z axis is parallel to the stage's z axis; with `InstanceOrientation.AXIS`, x is parallel
+    to it, and z points inward. `step` is the angle between instances (default: equal division of a full circle). `mirror` is the normal of
+    a mirror plane through the stage's origin; all instances are then mirror images.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]

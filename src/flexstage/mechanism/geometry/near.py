@@ -12,7 +12,7 @@ from flexstage.spatial.convex import Boxes, separations
 
 
 def near_pairs(boxes: Sequence[Outline], within: float) -> list[tuple[int, int]]:
-    """Return index pairs of outlines whose boxes are nearer than `within` [m], by the 15 separating axes of two boxes.
+    """Return index pairs of outlines whose boxes are nearer than `within` [m] along all 15 separating axes of two boxes.
 
     >>> from flexstage.spatial.frame import Frame
     >>> boxes = [Outline("", Frame(np.eye(3), np.array([x, 0.0, 0.0])), np.ones(3)) for x in (0.0, 1.5, 4.0)]

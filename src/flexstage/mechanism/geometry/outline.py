@@ -35,12 +35,12 @@ class Outline:
 
     @property
     def designs(self) -> tuple[int, ...]:
-        """Shape of the batch axes of position and size."""
+        """Shape of the batch of positions and sizes."""
         corners = () if self.corners is None else self.corners.shape[:-2]
         return np.broadcast_shapes(self.frame.position.shape[:-1], self.frame.rotation.shape[:-2], self.size.shape[:-1], corners)
 
     def reach(self, direction: Array) -> Array:
-        """Support function h(n) = max over the outline of n . r (...) [m], for a unit direction (..., 3) of the stage, without holes.
+        """Support function (...) [m]: the maximum of n . r for all points r of the outline; n (..., 3) is a unit `direction`.
 
         >>> box = Outline("box", Frame(np.eye(3), np.zeros(3)), np.array([2.0, 4.0, 6.0]))
         >>> float(box.reach(np.array([0.0, 1.0, 0.0])))

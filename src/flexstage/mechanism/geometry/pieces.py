@@ -49,7 +49,7 @@ def is_flat(form: Form) -> bool:
 def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
     """Return the convex pieces of a form in its own frame; none for an imported shape.
 
-    For a link's part, a length `trim` [m] is removed at both ends. Holes of the body in a solid are ignored.
+    A link's part is shortened by `trim` [m] at each end. Holes cut by other solids are ignored.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> len(pieces(Leaf("steel", 0.02, 0.001, 0.01)))

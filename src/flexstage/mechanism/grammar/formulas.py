@@ -92,7 +92,7 @@ def is_formula(text: str, scope: Scope) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """Named numbers of a file: their `values`, the `scope` for other formulas, their own `formulas`, and errors."""
+    """Named numbers of a file: their `values` and `formulas`, the `scope` for evaluation of other formulas, and errors."""
 
     values: Mapping[str, NamedNumber]
     scope: Scope
@@ -172,7 +172,7 @@ def _evaluate(
 
 
 def shown_unit(amount: Amount) -> str:
-    """Return the unit in which a computed named number is displayed; raises `ExpressionError` if there is none.
+    """Return the unit in which a computed named number is displayed; raises `ExpressionError` if no supported unit exists.
 
     >>> shown_unit(amount_of(NamedNumber(0.026, "um")))
     'mm'

@@ -120,7 +120,7 @@ class ListNode(RowNode):
         return self.length
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Yield the items; the address of a table is its number, counted from 1; other items have the address of the list."""
+        """Yield the items. A table has its number as address, counted from 1; other items have the address of the list."""
         numbered = isinstance(self.item, RecordNode | UnionNode)
         return ((str(number) if numbered else "", self.item, part) for number, part in enumerate(row, start=1))
 
@@ -189,7 +189,7 @@ class TableNode(Node):
 
 @dataclass(frozen=True)
 class OpenNode(Node):
-    """Table whose values are read later, because their names determine their kinds. `said` is the description in a schema."""
+    """Table whose values are read later, because their names determine their kinds. `said` is its description in a schema."""
 
     said: str
 
@@ -244,7 +244,7 @@ class RecordNode(Node):
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Classes of the node's values: only one class."""
+        """Classes of possible values: only one class."""
         return (self.record,)
 
     @property
@@ -287,7 +287,7 @@ class RecordNode(Node):
                 yield self.key(record, name), writer.write(slot.node, value, join(where, name))
 
     def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
-        """Return a schema reference to the definition of the class, with the discriminator `key = name`."""
+        """Return a schema reference to the definition of the class, in which the property `key` must equal `name`."""
         title = self.record.__name__
         if title not in definitions.known:
             definitions.known[title] = {}
@@ -295,7 +295,7 @@ class RecordNode(Node):
         return {"$ref": f"#/$defs/{title}"}
 
     def definition(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
-        """Return the full schema of the class, with the discriminator `key = name`."""
+        """Return the full schema of the class, in which the property `key` must equal `name`."""
         properties: dict[str, Any] = {key: {"const": name}} if key else {}
         required = [key] if key else []
         wrapped: list[dict[str, Any]] = []
@@ -346,7 +346,7 @@ class UnionNode(Node):
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Classes of the node's values: all alternatives."""
+        """Classes of possible values: all alternatives."""
         return tuple(option.record for _, option in self.options)
 
     def name_of(self, value: Any) -> str:
@@ -408,10 +408,10 @@ class UnionNode(Node):
 
 @dataclass(frozen=True)
 class FieldUnionNode(UnionNode):
-    """Object of one of several classes, identified by a field in the table; a table without such a field has the first class."""
+    """Object of one of several classes, identified by a field in the table; without such a field, the first class is used."""
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return an object of the alternative whose field is in the table."""
+        """Return an object of the class whose field is in the table."""
         if not _is_table(raw, where, reader):
             return BAD
         return next((option for name, option in self.options if name in raw), self.options[0][1]).read(raw, where, reader)
@@ -421,7 +421,7 @@ class FieldUnionNode(UnionNode):
 class Slot:
     """Field of a class: its file key, its node, whether it may be `None` (`optional`), and its default.
 
-    A field without a default has `dataclasses.MISSING`; a table is empty by default.
+    `default` is `dataclasses.MISSING` for a field without a default; tables are empty by default.
     """
 
     key: str
@@ -436,7 +436,7 @@ class Slot:
 
     @property
     def wrapped(self) -> UnionNode | None:
-        """Union whose alternatives' names replace the field's key in files; `None` for a field with its own key."""
+        """Union of classes whose names replace the field's key in files (`polar`); `None` for a field with its own key."""
         return self.node if isinstance(self.node, UnionNode) and self.node.told_by is None else None
 
     @property

@@ -59,7 +59,7 @@ class EnoughError(Exception):
 
 @dataclass
 class Reader:
-    """State while a file is read: errors, tags by address, and sources of catalogue entries.
+    """Collected while a file is read: errors, tags by address, and sources of catalogue entries.
 
     If `tagged`, tables may have tags; otherwise, `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: no
     formulas allowed). `formulas` contains the formulas that were read, by address. `bounds` contains the errors for numbers outside their
@@ -105,7 +105,7 @@ class Reader:
 
 @dataclass
 class Writer:
-    """State while a file is written: errors, and formulas by address. A value with a formula is written as the formula."""
+    """Collected while a file is written: errors, and formulas by address. A value with a formula is written as the formula."""
 
     findings: list[Finding] = field(default_factory=list)
     formulas: Mapping[str, str] = field(default_factory=dict)
@@ -115,7 +115,7 @@ class Writer:
         return any(key == where or key.startswith(f"{where}.") for key in self.formulas)
 
     def write(self, node: Node, value: Any, where: str) -> Any:
-        """Return the file form of a value; `None` after an error."""
+        """Return a value as a file contains it; `None` after an error."""
         try:
             return node.write(value, where, self)
         except DesignError as error:
@@ -152,15 +152,15 @@ class Node:
         return None
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return the value of the file form `raw`; `BAD` after an error. May raise `DesignError`."""
+        """Return the value that a file contains as `raw`; `BAD` after an error. May raise `DesignError`."""
         raise NotImplementedError
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Return the file form of a value; raises `DesignError` if it has none."""
+        """Return a value as a file contains it; raises `DesignError` if files cannot contain it."""
         raise NotImplementedError
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """Return the JSON Schema of the file form."""
+        """Return the JSON Schema of the value in a file."""
         raise NotImplementedError
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
@@ -335,7 +335,7 @@ class NamedNode(Node):
         return {"anyOf": [{"type": "number"}, *texts], "description": said}
 
     def child(self, value: Any, name: str) -> NumberNode:
-        """Return the node of its value."""
+        """Return the node of the number's value."""
         return NumberNode(quantity_of_unit(value.unit))
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
@@ -362,7 +362,7 @@ class RowNode(Node):
         return every([reader.read(node, part, join(where, name) if name else where) for name, node, part in self.parts(raw)])
 
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """Return a list with the file form of each element."""
+        """Return a list of the elements as a file contains them."""
         return [writer.write(node, part, join(where, name) if name else where) for name, node, part in self.parts(value)]
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
@@ -423,7 +423,7 @@ class DirectionNode(VectorNode):
         return DIRECTION
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return the direction of a name, or of three numbers without units."""
+        """Return the direction specified by a name or by three numbers without units."""
         if isinstance(raw, str) and raw in DIRECTIONS:
             return DIRECTIONS[raw]
         if not isinstance(raw, list) or len(raw) != 3:
@@ -471,7 +471,7 @@ class MatrixNode(VectorNode):
         return f"[{self.items[0].example}, ...]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """Return the schema of six rows."""
+        """Return the schema of a 6x6 matrix with six rows."""
         said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zeros have no unit"
         return super().schema(definitions) | {"description": said}
 
@@ -551,7 +551,7 @@ class TextNode(Node):
 
 @dataclass(frozen=True)
 class ChoiceNode(Node):
-    """Member of an enumeration."""
+    """One of several words: a member of an enumeration."""
 
     choices: type[Enum]
     only: tuple[Enum, ...] = ()
@@ -654,7 +654,7 @@ def short(raw: Any) -> str:
 
 
 def every(items: list[Any]) -> Any:
-    """Return the items, or `BAD` if any of them is `BAD`."""
+    """Return the items; `BAD` if any item could not be read."""
     return BAD if any(item is BAD for item in items) else tuple(items)
 
 

@@ -20,7 +20,7 @@ def _words() -> dict[str, dict[str, Any]]:
 
 
 def advise_kind(word: str, known: Collection[str]) -> str:
-    """Return a hint for an unknown kind or shape: the kind with this synonym, else the nearest names.
+    """Return a hint for an unknown kind or shape: the kind with the word as synonym, else the most similar names.
 
     >>> advise_kind("Leaf-Spring", ["leaf", "notch"]), advise_kind("leef", ["leaf", "notch"])
     ('Use leaf', 'Use leaf')
@@ -34,7 +34,7 @@ def advise_kind(word: str, known: Collection[str]) -> str:
 
 
 def advise_key(key: str, unused: Collection[str], known: Collection[str]) -> str:
-    """Return a hint for an unknown key: the key with this symbol, else the nearest names, `unused` keys first.
+    """Return a hint for an unknown key: the key with this symbol, else the most similar names, first of `unused` keys.
 
     >>> advise_key("E", {"young", "density"}, {"young", "density"}), advise_key("thicknes", {"section"}, {"section", "thickness"})
     ('Use young', 'Use thickness')

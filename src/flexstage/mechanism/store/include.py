@@ -49,8 +49,8 @@ def entry_of(address: str) -> str:
 def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ()) -> tuple[Included, list[Finding]]:
     """Return the tree with the entries of included files, and the errors.
 
-    Paths are relative to the folder of the file `where`. `above` are the files that are currently being read. An entry that occurs in two
-    files is an error.
+    Paths are relative to the folder of the file `where`. `above` are the files that refer to this file. An entry that occurs in two files
+    is an error.
 
     >>> with_included({"name": "a", "include": "stock.toml"}, "stage.toml")[1][0].what
     'must be a list of files (got "stock.toml")'

@@ -16,7 +16,7 @@ _OWNER = re.compile(r"(?P<owner>[^/.\s]+)/(?P<name>[^/.\s]+)(?:\.(?P<rest>.*))?"
 
 
 def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
-    r"""Yield the errors with the file `where` and the line before their addresses; a key of an inline table has the table's line.
+    r"""Yield the errors with the file `where` and the line in front of their addresses. A key of an inline table has the table's line.
 
     >>> result = with_lines([Finding("placements.B1.unit", "it is lost", "Find it")], "[placements]\nB1 = { unit = 1 }", "stage.toml")
     >>> print(next(result))
@@ -88,7 +88,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
 
 
 def line_numbers(text: str) -> Mapping[str, int]:
-    r"""Return the lines of table headings and of keys at the start of a line, by address. For an array of tables, the first line counts.
+    r"""Return the lines of table headings and of keys at the start of a line, by address. An array of tables has its first line.
 
     >>> dict(line_numbers("rate = 1\n[floor]\nx.y = 2"))
     {'rate': 1, 'floor': 2, 'floor.x.y': 3}
