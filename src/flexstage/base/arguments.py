@@ -90,8 +90,8 @@ class CheckedFields:
 def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function to convert or refuse its arguments according to its annotations.
 
-    A wrong argument raises `DesignError` with the name of its parameter. A stage passed instead of its model or result raises `TypeError`
-    with the probable call.
+    A wrong argument raises `DesignError` with the name of its parameter. If a stage is passed instead of its model or result, a `TypeError`
+    shows the probable call.
 
     >>> def bend(ends: tuple[str, ...], *, load: float = 1.0) -> float:
     ...     return load

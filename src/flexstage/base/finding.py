@@ -30,7 +30,7 @@ class Severity(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """A fault: file, line and key or the user's object (`B4/pivot`), the problem with its value, and an imperative hint."""
+    """A fault: its place (file, line and key, or an object such as `B4/pivot`), the problem with its value, and an imperative hint."""
 
     where: str
     what: str

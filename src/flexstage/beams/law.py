@@ -61,7 +61,7 @@ class PartLaw:
     beam's compliance. All 6x6 matrices are about the centre. These entries describe a part without a beam:
 
     - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some DOFs;
-    - `material_stiffness` (..., 6, 6) instead of `stiffness` if it depends on the material;
+    - `material_stiffness` (..., 6, 6) instead of `stiffness` if the stiffness depends on the material;
     - `mass` (..., 12, 12).
 
     Optional entries:

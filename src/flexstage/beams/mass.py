@@ -25,7 +25,7 @@ def mass(part: Part, material: Material | None) -> Array:
 
     The twist of the section at x is v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), with the twists q_a, q_b of the ends and Gamma(x) = S(x) K.
     X_x transports a twist from the centre to x. S is the compliance accumulated from the first end to x, and K = S(end)^-1. The mass is M =
-    integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma]. The mass includes the
+    integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = X_x [1 - Gamma, Gamma]. The mass includes the
     material between the ends of the profile. In a rigid motion, the inertia of the solid is exact. A `ComplianceMatrix` part has half its
     mass at each end; `Joint` and `Restricted` parts are massless.
 

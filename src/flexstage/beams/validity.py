@@ -40,7 +40,8 @@ class Validity(InNotebook):
 def validity(part: Part, where: str = "part", material: Material | None = None) -> Validity:
     """Estimate the model error of beam theory for a part; `where` names it in the warnings. Poisson's ratio is 0.3 without a material.
 
-    The errors are correct within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional finite elements.
+    Compared with three-dimensional finite elements, the estimates are correct within 1 % of the compliance (fillets along y and about z: 2
+    %).
 
     - The error of a notch includes the compliance of its roots, on blocks of full height and width. Straight notches, leaves and rods end
       at rigid faces.
@@ -99,7 +100,7 @@ def family_of(part: Part) -> str | None:
 
 
 def hinge_dimensions(part: Shaped, poisson: Number) -> HingeDimensions:
-    """Build the dimensions of a part that the fitted laws use.
+    """Build the dimensions of a part for the fitted laws.
 
     >>> from flexstage.parts.rod import Rod
     >>> float(hinge_dimensions(Rod("steel", length=0.1, diameter=0.002), 0.3).half)

@@ -67,8 +67,8 @@ class Link(Description):
 
     `joins` names the bodies; the relative twist is the motion of the second body relative to the first. `part` names an entry of the
     mechanism's parts. The link frame has its origin at the part's centre `at`, and x along `along` (first to second body). The z axis is
-    along `bends`, the axis of compliant rotation, which is required for parts that are not axisymmetric. `free` overrides the ideal degrees
-    of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start` at the first body, `end` at the second.
+    along `bends`, the axis of compliant rotation; `bends` is required for parts that are not axisymmetric. `free` overrides the ideal
+    degrees of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start` at the first body, `end` at the second.
 
     A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame of a part with
     ports has the part's axes. With two ports, `free` lists the degrees of freedom of the second port's body relative to the first port's

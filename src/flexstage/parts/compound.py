@@ -41,8 +41,8 @@ class Composition:
 class Compound(Elastic):
     """Compound part, replaced by its members at expansion. Members of the link `B1/pivot` are named `B1/pivot.left`, ...
 
-    The numeric fields of a compound have addresses as in any part; the values may be arrays and complex. Equal members should be the same
-    object, so that their stiffness law is computed only once.
+    The numeric fields of a compound have addresses as in any part; the values may be arrays or complex numbers. Equal members should be the
+    same object, so that their stiffness law is computed only once.
     """
 
     @property

@@ -113,9 +113,10 @@ class Hertz:
 def hertz(part: Contact, material: Material) -> Hertz:
     """Compute Hertzian contacts of a ball: a flat carries the preload F, each wall of a groove of half angle h carries F / (2 sin h).
 
-    A ball of radius R and a seat with Young's moduli E1, E2, shear moduli G1, G2 and Poisson's ratios nu1, nu2 have the contact moduli E*,
-    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, and G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. For the force P of one contact, the contact radius
-    is a = (3 P R / (4 E*))^(1/3), the normal stiffness 2 E* a = (6 E*^2 R P)^(1/3), and without slip the tangential stiffness 8 a G*.
+    A ball of radius R and a seat with Young's moduli E1, E2, shear moduli G1, G2 and Poisson's ratios nu1, nu2 have the contact moduli E*
+    and G*, with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. For the force P of one contact, the contact
+    radius is a = (3 P R / (4 E*))^(1/3), the normal stiffness 2 E* a = (6 E*^2 R P)^(1/3), and without slip the tangential stiffness 8 a
+    G*.
 
     Assumptions: isotropic materials, smooth faces, contact radius much smaller than the ball. Raises `DesignError` for a crystal, or if the
     seat's material is missing.

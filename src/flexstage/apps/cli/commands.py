@@ -141,7 +141,7 @@ MODELS = Models({"solid": f"{_SOLID}.modes:fea_modes"})
 
 
 class LazyCommand(TyperCommand):
-    """Stand-in for a command, in the help and in completion, until the command is called."""
+    """Placeholder for a command, in the help and in completion, until the command is called."""
 
     def __init__(self, command: Command) -> None:
         super().__init__(command.name, help=command.help, rich_markup_mode=None)

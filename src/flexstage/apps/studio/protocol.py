@@ -804,7 +804,7 @@ class Slopes:
 
 @dataclass(frozen=True)
 class Underway:
-    """Progress of a load path that a page requested by `request`: the completed fraction, and a text."""
+    """Progress of the load path of a page's `request`: the completed fraction, and a text."""
 
     request: int
     fraction: float

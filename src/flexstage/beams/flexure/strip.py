@@ -89,7 +89,7 @@ def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
 def fields(width: float, thickness: Number, poisson: Number, size: int, loads: tuple[int, int] = LOADS) -> Fields:
     """Compute the modes of a leaf's fields: responses of the strip to line loads on a2 and a4 that vary as Legendre polynomials.
 
-    `width` and `thickness` are divided by the length. `size` is the number of points of the rule.
+    `width` and `thickness` are fractions of the length. `size` is the number of points of the rule.
 
     The results are cached; their arrays cannot be modified.
 

@@ -77,10 +77,10 @@ def _along() -> tuple[Array, Array, Array]:
 def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
     """Compute the quadratic form (..., k, k) by which bending of the section reduces the energy of k twist modes.
 
-    The form is divided by D b / L, with the plate stiffness D, the width b and the length L. `width` is divided by the length; `twist` has
-    the twist modes at the `FINE` points. The twist k_x causes the curvatures w_xx = - k_x' z and w_xz = - k_x. In addition, the plate bends
-    in the shapes a_j phi_j with j = 3, 5, 7; a_j and a_j' are zero at the clamps. The fields a_j minimise the energy for a given twist
-    (docs/nonlinear.md, 9).
+    The form is divided by D b / L, with the plate stiffness D, the width b and the length L. `width` is a fraction of the length; `twist`
+    has the twist modes at the `FINE` points. The twist k_x causes the curvatures w_xx = - k_x' z and w_xz = - k_x. In addition, the plate
+    bends in the shapes a_j phi_j with j = 3, 5, 7; a_j and a_j' are zero at the clamps. The fields a_j minimise the energy for a given
+    twist (docs/nonlinear.md, 9).
     """
     width_wise, weights = across(_DEGREES), gauss(FINE).weights
     value, slope, _ = _along()

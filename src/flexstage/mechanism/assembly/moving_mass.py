@@ -29,7 +29,7 @@ def carried_masses(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProper
 
 
 def moving_inertia(mechanism: Mechanism, placed: PlacedBody) -> Array | None:
-    """Compute the inertia (..., 6, 6) of the body with payloads at its reference, in the stage's axes; `None` without mass.
+    """Compute the inertia (..., 6, 6) of the body with payloads about its reference point, in the stage's axes; `None` without mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

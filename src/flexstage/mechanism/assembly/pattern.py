@@ -72,8 +72,8 @@ class Polar(Description):
 class Pose(Description):
     """Pose of a single instance: origin `at`, x axis `along`, z axis `up` (perpendicular, of any length).
 
-    Two points of the x axis may replace `at` and `along`: the origin `start`, and an `end` in the direction of x. `mirror` is the normal of
-    a mirror plane through the stage's origin; the instance is then the mirror image.
+    Instead of `at` and `along`, two points of the x axis can be specified: the origin `start`, and an `end` in the direction of x. `mirror`
+    is the normal of a mirror plane through the stage's origin; the instance is then the mirror image.
     """
 
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)

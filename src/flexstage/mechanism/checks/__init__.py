@@ -29,8 +29,8 @@ __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return all errors of a description; none for a valid one.
 
-    A check is skipped if the data that it needs contain errors. Numbers are compared only if they are finite, orientations only for valid
-    parts. The graph is checked only if all names exist, matrix files only if all other checks pass.
+    A check is skipped if the data that it needs contain errors. Numbers are compared only if they are finite; orientations are checked only
+    for valid parts. The graph is checked only if all names exist, matrix files only if all other checks pass.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
     ['bodies: unknown body "platform". Declare the body that the stage positions under bodies.platform.']

@@ -153,7 +153,7 @@ def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = Mappi
     are approximated with an error of at most `SAGITTA`. Imported shapes are omitted.
 
     Bodies are displaced by twists `moved` (6,) [m, rad], which contain translation and rotation vector at the bodies' references. A link
-    moves without deformation by the mean of the bodies that it joins.
+    moves rigidly, by the mean of the twists of the bodies that it joins.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> gaps(parallelogram(), 1e-4)

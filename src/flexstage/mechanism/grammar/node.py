@@ -96,7 +96,7 @@ class Reader:
         return self.note([Finding(where, what, advice)])
 
     def note(self, findings: Iterable[Finding]) -> Bad:
-        """Report errors, up to a maximum number."""
+        """Report errors; stop reading after a maximum number."""
         self.findings += findings
         if len(self.findings) >= MOST_FINDINGS:
             raise EnoughError
@@ -269,7 +269,7 @@ class NumberNode(Node):
 
 
 def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
-    """Return the index of the first failure of a batch (`" at index 3"`, empty for one design), and the values there.
+    """Return the index of the first failing design of a batch (`" at index 3"`, empty for one design), and its values.
 
     >>> first_failing(np.array([False, True]), np.array([1.0, 2.0]), 3.0)
     (' at index 1', (2.0, 3.0))
