@@ -41,7 +41,7 @@ class Range:
 
 
 def ratio(top: Number, bottom: Number) -> Array:
-    """Return the real ratio of two dimensions."""
+    """Return the ratio of the real parts of two dimensions."""
     return np.real(np.asarray(top)) / np.real(np.asarray(bottom))
 
 

@@ -171,7 +171,7 @@ class Amplified(BetweenFaces, ChargedActuator):
 
 @dataclass(frozen=True, eq=False)
 class SteppingDrive(BetweenFaces):
-    """Stepping drive, self-locking without power: inertia drive, inchworm, screw.
+    """Stepping drive, self-locking without power, such as an inertia drive, inchworm or screw.
 
     The stroke is the whole `travel` along x, half of it on each side of the nominal position, in steps of `resolution`. Exactly one of
     `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness of the locked drive about its centre.

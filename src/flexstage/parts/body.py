@@ -67,7 +67,7 @@ class Block(Solid):
     """Rectangular block centred at `at`, x edge along `along`, z edge along `up` (perpendicular to `along`).
 
     Without directions, its edges are parallel to the axes of the drawing frame. `hole` gives the side lengths (x, y) [m] of a centred
-    rectangular through hole along the block's z edge. `subtract`: the block is a hole, see `Body`.
+    rectangular through hole along the block's z edge. If `subtract`, the block is a hole (see `Body`).
     """
 
     material: str
@@ -112,7 +112,7 @@ class Block(Solid):
 class Cylinder(Solid):
     """Round cylinder or tube centred at `at`, axis along `along`; `bore` is the diameter of a concentric hole.
 
-    `subtract`: the cylinder is a hole, see `Body`.
+    If `subtract`, the cylinder is a hole (see `Body`).
     """
 
     material: str
@@ -162,7 +162,7 @@ class Extrusion(Solid):
     """Polygon extruded by a `height`: corners `outline` (x, y) in a plane through `at`, half of the height on either side.
 
     The x axis of the outline is along `along`, the height along `up` (perpendicular to `along`). The corners may be in clockwise or
-    counter-clockwise order; the sides must not cross. `subtract`: the extrusion is a hole, see `Body`.
+    counter-clockwise order; the sides must not cross. If `subtract`, the extrusion is a hole (see `Body`).
 
     >>> corner = Extrusion("steel", outline=((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)), height=1.0)
     >>> corner.sides.tolist(), corner.frame.position.tolist()
@@ -236,7 +236,7 @@ class Extrusion(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Sphere(Solid):
-    """Ball centred at `at`. `subtract`: the ball is a cavity, see `Body`."""
+    """Ball centred at `at`. If `subtract`, the ball is a cavity (see `Body`)."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "sphere")
     material: str
@@ -302,8 +302,8 @@ class Imported(Solid):
     the file's bytes: it identifies the version, and caches use it instead of the file.
 
     `wall` is the thickness of the thinnest wall, for the mesh (default: the shortest side). A relative path is relative to the design file.
-    If the file has several solids, `solid` selects one by name or number (`#2`). `reflected`: use the mirror image of the file's solid in
-    its x-z plane; `middle`, `centre` and `inertia` describe the mirror image.
+    If the file has several solids, `solid` selects one by name or number (`#2`). If `reflected`, the solid is the mirror image of the
+    file's solid in its x-z plane; `middle`, `centre` and `inertia` describe the mirror image.
     """
 
     material: str
@@ -515,7 +515,7 @@ class Body(Description):
     """Rigid body with named `points`: either `solids` (outlines with materials), or a specified `mass`, `centre` of mass and `inertia`.
 
     Solids with `subtract` are holes: they remove their volume from the body's other solids of the same material. Specify either solids or
-    mass properties; a body with neither is massless. `point`: the specified mass is a point mass without inertia. `reference` is the
+    mass properties; a body with neither is massless. If `point`, the specified mass is a point mass without inertia. `reference` is the
     reference point of the body's twist. The default reference point is the centre of mass; for a massless body, the mean position of its
     joints.
 
@@ -548,7 +548,7 @@ def owner_of(bodies: Mapping[str, Body], name: str) -> str:
 class Payload(Description):
     """Payload of a body: `mass`, its centre `at` (in the stage's frame) and its `inertia` about that centre.
 
-    `point`: a point mass without inertia.
+    If `point`, the payload is a point mass without inertia.
     """
 
     body: str

@@ -31,7 +31,7 @@ _UNIT = np.eye(6)
 class Frame:
     """Frame relative to an outer frame: `rotation` (..., 3, 3) has its axes as columns, `position` (..., 3) [m] is its origin.
 
-    `mirrored`: the axes are left-handed, as of a frame seen in a mirror. Points, directions and inertias transform as usual. Twists need a
+    If `mirrored`, the axes are left-handed, as in a mirror image. Points, directions and inertias transform as usual. Twists need a
     right-handed frame: convert a mirrored frame with `right_handed` first.
     """
 

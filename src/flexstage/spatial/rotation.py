@@ -54,7 +54,7 @@ def rotation_vector(rotation: Array) -> Array:
     """Compute the rotation vector (3,) [rad] of one real rotation matrix (3, 3), for every angle up to pi.
 
     The rotation is first converted to a unit quaternion, largest component first (Shepperd, J. Guid. Control 1, 223, 1978). The result is
-    exact where `logarithm` is singular.
+    exact even at the angle pi, where `logarithm` is singular.
 
     >>> (rotation_vector(np.diag([-1.0, 1.0, -1.0])) / np.pi).tolist()
     [0.0, 1.0, 0.0]

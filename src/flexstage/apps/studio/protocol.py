@@ -274,7 +274,7 @@ class JobState:
 
 @dataclass(frozen=True)
 class Draft:
-    """The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file changed after this time."""
+    """The unsaved text of an ended studio: the `time` of its last change [s since 1970]. If `stale`, the file changed after this time."""
 
     name: str
     time: float
@@ -611,7 +611,7 @@ class Welcome:
 class State:
     """The text and its contents, sent to all pages after every change. `digest` is the digest of the file on disk.
 
-    `sound`: the design has no error; otherwise, `problems` lists the errors, and all numbers are from the last text without errors.
+    If `sound`, the design has no error; otherwise, `problems` lists the errors, and all numbers are from the last text without errors.
     `changed` is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned
     designs. `links` contains the line of each link of the expanded stage. `unprotected` is the reason why unsaved changes would be lost if
     the server ended. `drafts` lists unsaved changes of earlier servers.
@@ -645,7 +645,7 @@ class State:
 
 @dataclass(frozen=True)
 class Engine:
-    """State of the computing process, its task `text`, and the expected duration [s]. `ended`: the process crashed and was restarted."""
+    """State of the computing process, its task `text`, and the expected duration [s]. If `ended`, the process crashed and was restarted."""
 
     state: Literal["starts", "ready", "computes", "ended"]
     text: str
@@ -920,7 +920,7 @@ class Done:
 
 @dataclass(frozen=True)
 class Refusal:
-    """A refused request. `stale`: another page or program has changed the text or the file."""
+    """A refused request. If `stale`, another page or program has changed the text or the file."""
 
     to: int
     problems: tuple[Problem, ...]

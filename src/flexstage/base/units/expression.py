@@ -69,8 +69,8 @@ class UnknownAmountError(Exception):
 class Expression:
     """Parsed arithmetic expression: the `names` it uses, and a function `amount` that evaluates it for a scope.
 
-    `literal`: the expression is one number with its unit. `amount` raises `ExpressionError` for inconsistent dimensions, unknown names, and
-    values out of range.
+    If `literal`, the expression is one number with its unit. `amount` raises `ExpressionError` for inconsistent dimensions, unknown names,
+    and values out of range.
     """
 
     names: frozenset[str]

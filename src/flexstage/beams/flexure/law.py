@@ -90,7 +90,7 @@ class FlexureLaw:
 
 
 def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *, warps: bool = False) -> FlexureLaw:
-    """Build the law of a leaf with plate action and clamped ends (docs/nonlinear.md, 9 to 13); `warps`: the end bodies allow warping.
+    """Build the law of a leaf with plate action and clamped ends (docs/nonlinear.md, 9 to 13); if `warps`, the ends may warp.
 
     The law is exact for small strains of a thin leaf, except for two approximations:
 

@@ -152,8 +152,8 @@ def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = Mappi
     Two outlines form a pair if they belong to different bodies, to two links, or to a link and a body that it does not join. Round faces
     are approximated with an error of at most `SAGITTA`. Imported shapes are omitted.
 
-    Bodies are displaced by twists `moved` (6,) [m, rad], which contain translation and rotation vector at the bodies' references. A link
-    moves rigidly, by the mean of the twists of the bodies that it joins.
+    Bodies are displaced by twists `moved` (6,) [m, rad], the translation and rotation vector at the reference point of each. A link moves
+    rigidly, by the mean of the twists of the bodies that it joins.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> gaps(parallelogram(), 1e-4)

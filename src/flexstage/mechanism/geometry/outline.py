@@ -21,7 +21,7 @@ class Outline:
 
     `name` is the address (`platform.plate`, `B1/front`). `hole` (..., 2) gives the sides of a rectangular hole through a box along z.
     `bore` is the diameter of a hole through a cylinder along x. `corners` (..., n, 3) are the corners of an outline that does not fill its
-    box. `is_ball`: the outline is a ball.
+    box. If `is_ball`, the outline is a ball.
     """
 
     name: str

@@ -339,7 +339,7 @@ class NamedNode(Node):
         return NumberNode(quantity_of_unit(value.unit))
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """Yield its value."""
+        """Yield the value of the number."""
         yield where, value.value, self.child(value, "value")
 
 

@@ -78,7 +78,7 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
     """Decode a tree with the format `form` into an object of the class `record`; raises `DesignError` with all errors.
 
     The fields of the class have the same annotations as those of a description. If a key is a Python keyword, its field has a final
-    underscore. `tagged`: tables may have tags, which are dropped.
+    underscore. If `tagged`, tables may have tags, which are dropped.
 
     >>> from flexstage.parts.rod import Rod
     >>> record_from(Rod, {"format": "rod 1", "material": "steel", "length": "3 mm", "diameter": "1 mm"}, "rod 1").length

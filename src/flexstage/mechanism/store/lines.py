@@ -88,7 +88,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
 
 
 def line_numbers(text: str) -> Mapping[str, int]:
-    r"""Return the line numbers of table headings, and of keys that begin a line, by address. An array of tables has its first line.
+    r"""Return the line numbers of table headings, and of keys that begin a line, by address; of repeated headings, the first.
 
     >>> dict(line_numbers("rate = 1\n[floor]\nx.y = 2"))
     {'rate': 1, 'floor': 2, 'floor.x.y': 3}

@@ -33,7 +33,7 @@ def schema_of(
 ) -> dict[str, Any]:
     """Return the JSON Schema of a file that contains one record of a class, and `format = form`.
 
-    `tagged`: tables may have tags. `formulas`: numbers may be formulas. `tables` are additional tables of records, by key.
+    If `tagged`, tables may have tags; if `formulas`, numbers may be formulas. `tables` are additional tables of records, by key.
 
     >>> from flexstage.parts.rod import Rod
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]
