@@ -75,7 +75,7 @@ def _examine_installed() -> Iterator[Row]:
 
 
 def examine_package(need: Any) -> Row | None:
-    """Check whether a required package is installed, in its range of versions, and importable. Returns `None` if the package is not needed.
+    """Check whether a required package is installed in a permitted version, and importable. Returns `None` if it is not needed.
 
     The package is imported in a separate process, because a broken library may crash that process. Packages of extras are optional.
 

@@ -108,7 +108,7 @@ def law(part: Part, material: Material | None) -> Law:
 
 
 def viscous_damping(part: Part) -> Array | None:
-    """Return the viscous damping (..., 6, 6) [N s/m] of a part about its centre, or `None` if it specifies none.
+    """Return the viscous damping (..., 6, 6) [N s/m] of a part about its centre, or `None` if the part has none.
 
     A restricted part keeps the damping of its elastic DOFs.
 

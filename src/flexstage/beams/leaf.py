@@ -18,7 +18,7 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 
 def leaf_beam(part: Leaf, material: Material) -> Beam:
-    """Build the Timoshenko beam of a leaf without plate action (Cowper's shear factor); warping is restrained unless the leaf has `warps`.
+    """Build the Timoshenko beam of a leaf without plate action (Cowper's shear factor); warping is restrained unless its ends may warp.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> leaf = leaf_beam(Leaf("steel", length=0.05, thickness=0.0005, width=0.01), steel)
@@ -69,7 +69,7 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
 def torsional_compliance(part: Leaf, material: Material) -> Number:
     """Compute the torsional compliance of a leaf with restrained warping [rad/(N m)].
 
-    The compliance is L / (G J) (1 - tanh(lam) / lam) with lam = (L/b) sqrt(6 / (1 + nu)).
+    The compliance is (L / (G J)) (1 - tanh(lam) / lam) with lam = (L/b) sqrt(6 / (1 + nu)).
 
     J is the torsion constant of the rectangle. If the ends may warp, the compliance is L / (G J). Compared with plate elements (reference
     B6), the compliance is too large by 0.2 % at b/L = 0.1, 1.2 % at 0.5 and 6 % at 2.

@@ -20,7 +20,7 @@ _ODD = (0.1465, 0.0159, 0.05075, 0.3010, 0.1419)
 
 
 def moment_factor(slenderness: Number, poisson: Number) -> Number:
-    """Compute the factor of plate action on EI/L for a bending moment constant along the leaf; `slenderness` is length over width.
+    """Compute the factor by which plate action raises EI/L for a constant bending moment; `slenderness` is length divided by width.
 
     >>> [round(moment_factor(ratio, 0.3), 4) for ratio in (10.0, 5.0, 2.0, 0.5)]  # reference B6: 1.0076, 1.0150, 1.0377, 1.0819
     [1.0074, 1.0147, 1.0374, 1.0823]
@@ -29,7 +29,7 @@ def moment_factor(slenderness: Number, poisson: Number) -> Number:
 
 
 def shear_factor(slenderness: Number, poisson: Number) -> Number:
-    """Compute the factor of plate action on 12 EI/L^3 for a guided leaf (no moment at its centre); `slenderness` is length over width.
+    """Compute the factor by which plate action raises 12 EI/L^3 for a guided leaf (no moment at its centre); `slenderness`: length / width.
 
     >>> [round(shear_factor(ratio, 0.3), 4) for ratio in (10.0, 5.0, 2.0, 0.5)]  # reference B6: 1.0209, 1.0376, 1.0679, 1.0912
     [1.0202, 1.0371, 1.0676, 1.0913]

@@ -44,7 +44,7 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
 
 
 def proportions(profile: Profile, thickness: Number, family: str) -> tuple[Range, ...]:
-    """Return the ratio with a validated range: thickness over throat radius, or length over thickness of a straight profile.
+    """Return the ratio with a validated range: thickness / throat radius, or length / thickness of a straight profile.
 
     For a `Contour` (V, parabola, table, ...), which was not compared with finite elements, the result is empty.
     """

@@ -20,7 +20,7 @@ class Actuator(Elastic):
     A stroke actuator (`input` is a displacement) has a free deformation s per unit of stroke u. The force of a stroke actuator with the
     stiffness k is k (dx - s u) for a relative displacement dx of its faces. The `input` of a force actuator is a force or a current. The
     actuator exerts `wrench` per unit of input on its second face, and the opposite wrench on its first face. A force actuator leaves all
-    degrees of freedom free; its stiffness is a separate term. A positive input pushes the faces apart.
+    degrees of freedom free; any stiffness is added separately. A positive input pushes the faces apart.
     """
 
     input: ClassVar[Quantity] = DISPLACEMENT

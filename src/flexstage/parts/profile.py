@@ -229,7 +229,8 @@ class FreeForm(Contour):
     """Free-form profile from a table: `heights` added on each side, at `stations` from the middle to an end. The least height is zero.
 
     Between stations, the profile is a cubic Hermite spline with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984). The
-    spline equals PCHIP for the table and its mirror image: the profile is smooth, and heights stay between those of adjacent stations.
+    spline equals PCHIP for the table and its mirror image: the profile is smooth, and each height is between the heights of the two
+    adjacent stations.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "free")

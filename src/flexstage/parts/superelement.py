@@ -47,7 +47,7 @@ class MatrixNames(Description):
 
 @dataclass(frozen=True, eq=False)
 class Superelement(Elastic):
-    """Superelement: stiffness K and mass M over the twists of its `ports` and internal coordinates, from files in `units`.
+    """Superelement: stiffness K and mass M for the twists of its `ports` and for internal coordinates, from files in `units`.
 
     Either `file` is a MAT or NPZ file with both matrices (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files.
     A viscous damping matrix D is optional (`arrays`, or `damping_file`). Coordinates that do not belong to a port are internal: nodal

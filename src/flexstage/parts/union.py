@@ -102,8 +102,9 @@ class _Prism:
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """Yield densities and moments to be added to those of a body's solids, so that common volumes count only once.
 
-    A subtracted solid removes its intersection with other solids of the same material: a solid minus a hole is the union of both, minus the
-    hole. Raises `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not prisms along one axis.
+    A subtracted solid removes its intersection with other solids of the same material: the moments of the rest are those of the union of
+    both, less the subtracted solid. Raises `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not
+    prisms along one axis.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity

@@ -76,7 +76,7 @@ def identity() -> Frame:
 
 
 def reflection(axis: int) -> Frame:
-    """Return the left-handed frame that reflects the given axis (0, 1, 2) in the plane through the origin.
+    """Return the left-handed frame whose given axis (0, 1, 2) is reversed.
 
     >>> reflection(1).point(np.array([1.0, 2.0, 3.0])).tolist()
     [1.0, -2.0, 3.0]

@@ -233,7 +233,7 @@ class Snippet:
 
 @dataclass(frozen=True)
 class PairRow:
-    """A pair of a design job (architecture and actuator): its goal, or the reason for its failure, and its file name, or empty."""
+    """A pair of architecture and actuator in a design job: `goal`, or `reason` for its failure, and `file` name (may be empty)."""
 
     architecture: str
     actuator: str

@@ -39,7 +39,7 @@ def duration(seconds: float) -> str:
 
 
 def seconds_left(fraction: float, elapsed: float) -> float | None:
-    """Return the remaining time [s], extrapolated from the completed fraction and the elapsed time; `None` if it is too early.
+    """Return the remaining time [s], extrapolated from completed fraction and elapsed time; `None` if it is too early for an estimate.
 
     >>> seconds_left(0.25, 10.0), seconds_left(0.01, 10.0)
     (30.0, None)

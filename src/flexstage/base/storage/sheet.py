@@ -64,7 +64,7 @@ def parts(result: Any) -> Iterator[_Part]:
 
 
 def rows_of(source: Any) -> Sheet:
-    """Return a sheet with a row per record of a mapping or sequence, or a row per element of one record's arrays."""
+    """Return a sheet with a row for each record in a mapping or sequence; for a single record, a row for each element of its arrays."""
     if isinstance(source, Mapping):
         return Sheet(owner_names(source), _columns([_record(each) for each in source.values()]))
     if isinstance(source, Sequence):

@@ -75,7 +75,7 @@ def slopes(count: int, places: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """Integrals of the shapes phi_j = P_j(2 z) / 12 (Legendre polynomials P_j) and their derivatives across the width b = 1.
+    """Integrals, across the width b = 1, of the shapes phi_j = P_j(2 z) / 12 (Legendre polynomials P_j) and their derivatives.
 
     The integrands are phi phi (`plain`), phi' phi' (`sloped`), phi'' phi'' (`curved`), phi phi'' (`mixed`), z phi'' (`curling`) and phi'
     (`turning`).

@@ -22,7 +22,7 @@ _CUT = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Functions of the place s from 0 to 1, at p points: `values` (..., k, p), and `slopes`, the derivatives with respect to s."""
+    """k functions of the position s from 0 to 1, at p points: `values` (..., k, p), and `slopes`, the derivatives with respect to s."""
 
     values: Array
     slopes: Array
@@ -51,7 +51,7 @@ def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
 
 
 def orthonormal(modes: Modes, weights: Array) -> Modes:
-    """Orthonormalise functions with respect to the integral that has the `weights` (p,) at their points.
+    """Orthonormalise functions with respect to the integral with `weights` (p,) at their p points.
 
     In short wide leaves, the functions of `restrained_twist_modes` are nearly linearly dependent, which would amplify rounding errors.
 

@@ -80,7 +80,7 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
 
 
 def set_values(mechanism: Mechanism, values: Iterable[tuple[str, Any]]) -> Mechanism:
-    """Return the mechanism with new values at several addresses, written in their order; formulas are recomputed once (see `set_value`)."""
+    """Return the mechanism with new values at several addresses, set in their order; formulas are recomputed once (see `set_value`)."""
     changed, lost, numbers = mechanism, list[str](), list[str]()
     for address, value in values:
         place = locate(changed, address)

@@ -26,7 +26,7 @@ class Layout:
     """Layout of the coordinate vector: six coordinates per body, the platform first; then the internal coordinates of links.
 
     `inner` is the number of internal coordinates of each link: amplitudes of its fixed-interface modes, which are zero in a rigid motion.
-    In a `sparse` layout, matrices over the coordinates have the type `flexstage.base.sparse.Sparse`.
+    In a `sparse` layout, matrices with the coordinates as columns have the type `flexstage.base.sparse.Sparse`.
     """
 
     bodies: tuple[str, ...]

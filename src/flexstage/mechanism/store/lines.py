@@ -50,7 +50,7 @@ def spot_of(finding: Finding, where: str) -> Spot:
 
 
 def line_of(address: str, lines: Mapping[str, int]) -> int | None:
-    """Return the line of an address. If it has no line, use the nearest enclosing table or the first key of that table; else `None`.
+    """Return the line of an address. If the address has no line, use its nearest enclosing table or the table's first key; else `None`.
 
     For a link of an instance, the line is that of the link in the unit.
 
