@@ -20,7 +20,7 @@ export interface Problem {
 }
 
 /**
- * A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. The display `unit` is `factor` SI units.
+ * A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` is `factor` SI units.
  *
  * `low` and `high` are the ends of the slider, within the bounds of the number. `formula` defines the number. `old` is the value in the
  * file on disk. `group` is the table that contains the number; `line` is the line of the number, or of this table.
@@ -42,7 +42,7 @@ export interface Amount {
   tag: string;
 }
 
-/** An actuator, an axis of the platform or a gauge, with the ends of its range if known. The display `unit` is `factor` times `si`. */
+/** An actuator, an axis of the platform or a gauge, with the ends of its range if known. One display `unit` is `factor` units `si`. */
 export interface Channel {
   name: string;
   si: string;
@@ -98,8 +98,8 @@ export interface ModeShape {
 /**
  * A platform mode by finite elements: `error` is the estimated relative error of its frequency, `motion` the data for a viewer.
  *
- * `theory` is the number of the paired mode of theory, null without one. `theory_frequency` [Hz] is the frequency of this mode,
- * `difference` its relative difference from finite elements, and `assurance` the modal assurance criterion of the pair.
+ * `theory` is the number of the paired mode of the lumped model; null without a pair. `theory_frequency` [Hz] is the frequency of the
+ * lumped mode, `difference` its relative difference from finite elements, and `assurance` the modal assurance criterion of the pair.
  */
 export interface SolidMode {
   number: number;
@@ -196,7 +196,7 @@ export interface Snippet {
   fields: Record<string, string>;
 }
 
-/** A pair of a design job: its goal, or the reason for its failure. `file` is the design's file name, or empty. */
+/** A pair of architecture and actuator in a design job: `goal`, or `reason` for its failure, and `file` name (may be empty). */
 export interface PairRow {
   architecture: string;
   actuator: string;
@@ -232,7 +232,7 @@ export interface JobState {
   tables: ResultTable[];
 }
 
-/** The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file changed after this time. */
+/** The unsaved text of an ended studio: the `time` of its last change [s since 1970]. If `stale`, the file changed after this time. */
 export interface Draft {
   name: string;
   time: number;
@@ -308,7 +308,7 @@ export interface Respond {
   high: number | null;
 }
 
-/** Request for the matrices between strokes, platform and gauges. */
+/** Request for the linear maps between strokes, platform motion and gauge readings. */
 export interface Jog {
   kind: "jog";
   id: number;
@@ -480,7 +480,7 @@ export interface JobForm {
 }
 
 /**
- * Check the `text` of a specification, in which any `values` of the form (TOML) replace values.
+ * Check the `text` of a specification, in which `values` (TOML) from the form replace values.
  *
  * An empty text is replaced by the text of `file` in the folder. Without a file, the last text is used (initially an example).
  */
@@ -530,10 +530,10 @@ export interface Welcome {
 /**
  * The text and its contents, sent to all pages after every change. `digest` is the digest of the file on disk.
  *
- * `sound`: the design has no error; otherwise, `problems` lists the errors, and numbers belong to the last text without errors. `changed`
- * is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned designs.
- * `links` contains the line of each link of the expanded stage. `unprotected` is the reason why unsaved changes would be lost if the
- * server ended. `drafts` lists unsaved changes of earlier servers.
+ * If `sound`, the design has no error; otherwise, `problems` lists the errors, and all numbers are from the last text without errors.
+ * `changed` is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned
+ * designs. `links` contains the line of each link of the expanded stage. `unprotected` is the reason why unsaved changes would be lost if
+ * the server ended. `drafts` lists unsaved changes of earlier servers.
  */
 export interface State {
   kind: "state";
@@ -563,7 +563,7 @@ export interface State {
   drafts: Draft[];
 }
 
-/** State of the computing process, its task `text`, and the expected duration [s]. `ended`: the process crashed and was restarted. */
+/** State of the computing process, its task `text`, and the expected duration [s]. If `ended`, the process crashed and was restarted. */
 export interface Engine {
   kind: "engine";
   state: "starts" | "ready" | "computes" | "ended";
@@ -673,7 +673,7 @@ export interface Place {
 }
 
 /**
- * Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
+ * Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` the actuator inputs per unit twist.
  *
  * `gauges` contains the readings per unit input; `ideal` is the platform twist per unit input of the ideal stage. `stress` (links x
  * inputs) is in Pa per unit input; `rest` is the stress without strokes. The stress of a link is at most `rest` plus the sum of the
@@ -713,7 +713,7 @@ export interface Slopes {
   missing: Record<string, string>;
 }
 
-/** Progress of a load path that a page requested by `request`: the completed fraction, and a text. */
+/** Progress of the load path of a page's `request`: the completed fraction, and a text. */
 export interface Underway {
   kind: "underway";
   request: number;
@@ -817,7 +817,7 @@ export interface Done {
   job: number | null;
 }
 
-/** A refused request. `stale`: another page or program has changed the text or the file. */
+/** A refused request. If `stale`, another page or program has changed the text or the file. */
 export interface Refusal {
   kind: "refusal";
   to: number;

@@ -103,7 +103,7 @@ def _depth(values: Any) -> int:
 
 
 def magnitude(value: Any) -> Any:
-    """Return |x|, valid for complex-step derivatives: x or -x by the sign of the real part.
+    """Return |x|, valid for complex-step derivatives: x or -x, depending on the sign of the real part.
 
     >>> magnitude(np.array([-2.0 + 1e-20j])).tolist()
     [(2-1e-20j)]

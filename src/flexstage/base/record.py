@@ -76,7 +76,7 @@ class Called:
 
 
 class Mark(Enum):
-    """Meaning of a cell, shown by colour, weight or a sign."""
+    """Meaning of a cell, shown by colour, font weight or a sign."""
 
     PLAIN = "plain"
     STRONG = "strong"

@@ -25,7 +25,7 @@ _CROSS[[0, 1, 2], [1, 2, 0], [2, 0, 1]], _CROSS[[0, 1, 2], [2, 0, 1], [1, 2, 0]]
 
 @dataclass(frozen=True, eq=False)
 class Geometric:
-    """Geometric stiffness of a part for the twists of both ends, taken at its centre, and for k inner shapes of twist and bending.
+    """Geometric stiffness of a part for the twists of both ends about its centre, and for k inner shapes of twist and bending.
 
     `per_force` (..., 6, 12 + k, 12 + k) is the geometric stiffness per unit of each component of the wrench on the second end. The wrench
     is about the centre, in the link frame. `inner` (..., k) are the elastic stiffnesses of the inner shapes, which do not move the ends.
@@ -58,8 +58,8 @@ def geometric(part: Part, material: Material | None) -> Geometric:
 def foreshortening(part: Part, material: Material | None) -> Array:
     """Compute the foreshortening matrices G (6, 6, 6): a relative twist e of the ends causes the second-order deformations 1/2 e^T G_i e.
 
-    The twist is taken at the centre. The deformation is due to bending and twist; the axial stretch is neglected. The geometric stiffness
-    under the wrench w is that of a bushing plus the sum of w_i G_i over the components i. G is zero for parts without length.
+    The twist is about the part's centre. The deformation is due to bending and twist; the axial stretch is neglected. The geometric
+    stiffness under the wrench w is that of a bushing plus the sum of w_i G_i over the components i. G is zero for parts without length.
     """
     own, axis = geometric(part, material), np.eye(3)[0]
     result = own.per_force[..., 6:ENDS, 6:ENDS] - _of_point().per_force[:, 6:, 6:]

@@ -46,7 +46,7 @@ def has_section(part: Part) -> bool:
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
-    """Compute the largest stress in a part whose second end carries `wrench` (..., 6) [N, N m], taken at the centre in the link frame.
+    """Compute the largest stress in a part whose second end carries `wrench` (..., 6) [N, N m], about the centre in the link frame.
 
     The stress is computed by beam theory at every station x from end to end. Axial force and bending moments follow from force F and moment
     m of the wrench: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z. The section has thickness t, width b (round: diameter d) and area A.

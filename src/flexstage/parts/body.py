@@ -48,7 +48,7 @@ class Solid(Description):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Required inequalities between its numbers."""
+        """Required inequalities between the solid's numbers."""
         yield from ()
 
     @property

@@ -192,7 +192,7 @@ class Circle(Section):
         return 2.0 * self.inertia_y
 
     def outline(self, angles: Array) -> Array:
-        """Return the points (n, 2) [m] of the outline at the angles."""
+        """Return the points (n, 2) [m] of the outline at `angles` [rad] from y."""
         return 0.5 * single(self.height) * np.column_stack([np.cos(angles), np.sin(angles)])
 
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
@@ -200,7 +200,7 @@ class Circle(Section):
         return axial + 0.5 * self.height * np.sqrt(about_y * about_y + about_z * about_z)
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:  # noqa: ARG002  (it does not warp)
-        """Return the shear stress at the surface: torque times radius over J [Pa]."""
+        """Return the shear stress at the surface: torque times radius divided by J [Pa]."""
         return torque * 0.5 * self.height / self.torsion
 
 

@@ -30,7 +30,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Amount:
-    """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. The display `unit` is `factor` SI units.
+    """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` is `factor` SI units.
 
     `low` and `high` are the ends of the slider, within the bounds of the number. `formula` defines the number. `old` is the value in the
     file on disk. `group` is the table that contains the number; `line` is the line of the number, or of this table.
@@ -54,7 +54,7 @@ class Amount:
 
 @dataclass(frozen=True)
 class Channel:
-    """An actuator, an axis of the platform or a gauge, with the ends of its range if known. The display `unit` is `factor` times `si`."""
+    """An actuator, an axis of the platform or a gauge, with the ends of its range if known. One display `unit` is `factor` units `si`."""
 
     name: str
     si: str

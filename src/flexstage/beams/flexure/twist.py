@@ -32,7 +32,7 @@ def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
     """Compute the shapes of the twist rate under restrained warping (docs/nonlinear.md, 9).
 
     The shapes are P_k - cosh(c u) / cosh(c) for even k, and P_k - sinh(c u) / sinh(c) for odd k. P_k are the Legendre polynomials of u = 2
-    s - 1, with the place s from 0 to 1.
+    s - 1, with the position s from 0 to 1.
 
     `decay` c (...) is half the length times sqrt(G J / (E C_w)), with the torsional rigidity G J and the warping rigidity E C_w. The
     computation does not overflow for large c.

@@ -281,7 +281,7 @@ def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
 
 
 def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
-    """Return errors of a number with the quantity and bound of its node.
+    """Return errors of a number: an implausible size, or a value outside the bound of its node.
 
     >>> from flexstage.base.units.quantity import FREQUENCY, POSITIVE
     >>> print(*number_findings("rate", 0.0, NumberNode(FREQUENCY, POSITIVE)))
