@@ -1,4 +1,4 @@
-"""Results of many designs at large displacements, and their gradients by numbers of the description (docs/nonlinear.md, 31)."""
+"""Results of many designs at large displacements, and their gradients by numbers of the description (docs/nonlinear.md, 33)."""
 
 from __future__ import annotations
 
