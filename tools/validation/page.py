@@ -130,8 +130,8 @@ This page compares results of flexstage with published and independent results. 
 `make check-all` computes every value again.
 
 Only reference values are entered by hand, each with its source. The tolerance of a row is the tolerance of its source. If the source has
-no tolerance, our value must round to the printed digits. For hinges, the error of beam theory is known, and our value must have *this
-error*."""
+no tolerance, our value must round to the printed digits. For hinges, the error of beam theory is known, and the error of our value
+must equal *this error*."""
 
 _SCORES = """\
 The table compares published results of stages that were built or computed. Sources, tolerances and the commands that repeat a row are on
