@@ -80,11 +80,9 @@ class LoopOptions:
         TuningObjective | None,
         word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),
     ] = None
-    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning for the highest bandwidth that Ms allows, without optimisation.")] = (
-        False
-    )
+    quick: Annotated[bool, typer.Option("--quick", help="Tune for the highest bandwidth that Ms allows, without optimisation.")] = False
     max_sensitivity: Annotated[
-        str | None, text_option("--max-sensitivity", "NUMBER", "Maximum peak sensitivity Ms of a tuned loop. Default: 2.")
+        str | None, text_option("--max-sensitivity", "NUMBER", "Largest permitted peak sensitivity Ms of a tuned loop. Default: 2.")
     ] = None
     force_feedback: Annotated[
         str | None,
@@ -96,7 +94,7 @@ class LoopOptions:
             "--tracking", Following, "Tracking method for a known path; zv and zvd need a set-up file. Default: none.", show_default=False
         ),
     ] = None
-    rate: Annotated[str | None, rate_option("10 kHz, or 10 times the highest platform mode")] = None
+    rate: Annotated[str | None, rate_option("10 kHz, or 10 times the highest platform mode if higher")] = None
     delay: Annotated[str | None, text_option("--delay", "VALUE", "Delay from sampling to the new output. Default: one sample.")] = None
     trajectory: Annotated[
         str | None,
@@ -107,7 +105,7 @@ class LoopOptions:
         text_option(
             "--amplitude",
             "AXIS=VALUE",
-            "Amplitude of a step or sine, e.g. x=1um. Default: 1 um or 10 urad (sine: first axis only). Repeatable.",
+            "Amplitude of a step or sine, e.g. x=1um. Default: 1 um or 10 urad; for a sine, only along the first axis. Repeatable.",
         ),
     ] = None
     seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until settled.")] = None
@@ -121,7 +119,9 @@ class LoopOptions:
     ] = None
     hysteresis: Annotated[
         str | None,
-        text_option("--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: model file, or width of the loop, e.g. 15%. Default: none."),
+        text_option(
+            "--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: model file, or width of the hysteresis loop, e.g. 15%. Default: none."
+        ),
     ] = None
     floor: Annotated[
         list[str] | None,

@@ -48,7 +48,7 @@ Commands: TypeAlias = Annotated[
         "--command",
         "AXIS=VALUE",
         "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. Default: the strokes that the design "
-        "requires; if it requires none, flexstage budget uses the largest stroke along each axis with the other axes at rest.",
+        "requires; without required strokes, flexstage budget uses the largest stroke along each axis with the other axes at rest.",
     ),
 ]
 
@@ -62,8 +62,8 @@ def workspace(
 ) -> CommandResult:
     """Compute strokes, forces, clearances and safety factors.
 
-    Prints strokes, forces, voltages, gauge readings, clearance, kinematic error, stress, buckling and loads. For a force-driven stage:
-    strokes and the cause of their limits, current, voltage and heat.
+    Prints strokes, forces, voltages, gauge readings, clearance, kinematic error, stress, buckling and loads. For a force-driven stage,
+    prints strokes with the causes of their limits, currents, voltages and heat.
     """
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
@@ -115,7 +115,7 @@ def drift(
         text_option(
             "--ground",
             "MATERIAL",
-            'Material of the ground, or "none" for a ground without expansion. Default: as in the design, else the material of its links.',
+            'Material of the ground, or "none" for a ground without expansion. Default: as in the design, or of links at the ground.',
         ),
     ] = None,
 ) -> CommandResult:
@@ -144,7 +144,7 @@ def sensitivities(
     """Compute sensitivities of frequencies and lost motion.
 
     Prints exact derivatives of frequencies, transmission ratios and lost motion with respect to parameters, by the lumped model. For
-    force-driven stages, prints those of frequencies only.
+    force-driven stages, prints derivatives of frequencies only.
     """
     found = derivatives.sensitivities(mechanism, names(parameters) if parameters else None, modes=count)
     print_missing(found.missing)
@@ -170,12 +170,12 @@ def budget(
 
     The contributions are lost motion, crosstalk, error of the linear map, gauge noise, quantisation and drift, by the lumped model.
 
-    For force-driven stages in open loop: parasitic motion, gauge noise, quantisation and drift.
+    For force-driven stages, the contributions in open loop are parasitic motion, gauge noise, quantisation and drift.
 
-    For a stage without stiffness along its drive: closed-loop positioning noise, as in flexstage loop --quick. Its other options are
-    refused for such a stage.
+    For a stage without stiffness along its drive, prints the closed-loop positioning noise, as flexstage loop --quick does, and refuses
+    options such as --command.
 
-    With --input-asd: also the motion due to actuator noise and floor vibration.
+    With --input-asd, also prints the motion due to actuator noise and floor vibration.
     """
     stands = command_stage(mechanism, OperatingPointOptions())
     if stands.links.floating is not None:

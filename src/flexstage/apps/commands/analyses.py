@@ -143,7 +143,7 @@ def lost_motion(
     With --at, --load, --fixed or --temperature, the model is linearised about that operating point. The ideal motion is still computed in
     the undeformed configuration.
 
-    For force-driven stages: force per displacement, compared with the ideal guide.
+    For force-driven stages, prints the force per displacement, compared with the ideal guide.
     """
     there, kinematics = command_stage(mechanism, place, model), ideal(mechanism)
     if kinematics.thrusts and not kinematics.actuated:
@@ -188,8 +188,8 @@ def modes(
 ) -> CommandResult:
     """Compute natural frequencies, mode names and shapes.
 
-    Prints platform modes and local modes. For each mode, prints the platform's fraction of kinetic energy and the mode's fraction of the
-    platform's static compliance. --view writes an animation.
+    Prints platform modes and local modes. For each mode, prints the fraction of kinetic energy in the platform, and the contribution of the
+    mode to the static compliance of the platform. --view writes an animation.
 
     With --at, --load, --fixed or --temperature, the model is linearised about that operating point, with large displacements and weight.
     """

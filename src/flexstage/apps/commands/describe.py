@@ -53,9 +53,9 @@ def new(
     case_parameter: Annotated[
         list[str] | None, text_option("--case-parameter", "NAME=VALUE", "Parameter of the case, e.g. long_arm=80mm. Repeatable.")
     ] = None,
-    listed: Annotated[bool, typer.Option("--list", help="List of the shipped cases.")] = False,
-    list_parameters: Annotated[bool, typer.Option("--list-parameters", help="List of the parameters of the case.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Permission to overwrite the file.")] = False,
+    listed: Annotated[bool, typer.Option("--list", help="List the shipped cases.")] = False,
+    list_parameters: Annotated[bool, typer.Option("--list-parameters", help="List the parameters of the case.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
 ) -> None:
     """Write a shipped case as a commented design file."""
     if listed or list_parameters:
@@ -99,7 +99,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Prints every error with key, value and hint. Exit code 2 if there is an error.
 
-    Also lists default values, and warnings, including those about finite elements. Neither changes the exit code.
+    Also lists default values and warnings, which do not change the exit code. Some warnings concern finite elements.
     """
     require_writable([("--json", json)], [design])
     try:

@@ -35,10 +35,10 @@ def design(
     architecture: Annotated[
         list[str] | None, typer.Option("--architecture", metavar="NAME", help="Architecture to try. Repeatable. Default: all.")
     ] = None,
-    prove: Annotated[bool, typer.Option("--prove", help="Verification of the first three answers by finite elements.")] = False,
-    tolerance: Annotated[bool, typer.Option("--tolerance", help="Production yield of the first three answers within tolerances.")] = False,
+    prove: Annotated[bool, typer.Option("--prove", help="Verify the first three answers by finite elements.")] = False,
+    tolerance: Annotated[bool, typer.Option("--tolerance", help="Compute the production yield of the first three answers.")] = False,
     loop: Annotated[
-        bool, typer.Option("--loop", help="Computation of each control loop's sensitivity crossover, for the first three answers.")
+        bool, typer.Option("--loop", help="Compute the sensitivity crossover of each control loop, for the first three answers.")
     ] = False,
     resume: Resume = False,
     workers: Workers = None,
@@ -46,7 +46,7 @@ def design(
     """Design stages for a specification.
 
     Theoretical bounds exclude impossible pairs of architecture and actuator. The other pairs are optimised within the requirements, with
-    corrections for elastic bodies and large displacements. Each design found (answer) is written as a design file with a study.
+    corrections for elastic bodies and large displacements. Each design found (an answer) is written as a design file with a study.
 
     If no answer is found, the exit code is 1. An interrupted search keeps its results in the folder; --resume continues the search.
     """

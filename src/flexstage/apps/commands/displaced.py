@@ -56,7 +56,7 @@ def stroke(
     named: Annotated[
         str,
         text_option(
-            "--path", "NAME", "Load path [paths.NAME] of the design file. Default: the first one, unless --drive, --from or --to is used."
+            "--path", "NAME", "Load path [paths.NAME] of the design file. Default: the first path, unless --drive, --from or --to is used."
         ),
     ] = "",
     drive: Annotated[
@@ -71,8 +71,8 @@ def stroke(
         text_option(
             "--to",
             "VALUE",
-            'Last value of the drive, e.g. "5 mm". Default: the required stroke. '
-            "Without one, the full stroke of a driven stack, or 0.1 mm (1 mrad) for another coordinate.",
+            'Last value of the drive, e.g. "5 mm". Default: the required stroke; '
+            "without a required stroke, the full stroke of a driven stack, or 0.1 mm (1 mrad) for another coordinate.",
         ),
     ] = "",
     steps: Annotated[int | None, STEPS] = None,
@@ -183,10 +183,10 @@ def buckle(
 ) -> CommandResult:
     """Find the load at which the stage buckles.
 
-    The model includes large displacements. The result is a limit point, a bifurcation, or an imperfect bifurcation. All other loads,
-    including the weight, are constant.
+    The model includes large displacements. The critical point is a limit point, a bifurcation, or an imperfect bifurcation. All loads that
+    are not scaled, including the weight, are constant.
 
-    Without --scale-load and without an operating point, each load case is computed at rest and at all ends of paths and strokes.
+    Without --scale-load and without an operating point, each load case is analysed at rest, and at both ends of all paths and strokes.
     """
     cases = (_case(mechanism, place, scale_load or ()),) if scale_load or place.at or place.load or place.fixed else load_cases(mechanism)
     found = buckling_factors(mechanism, cases, temperature=place.warmth, demand=asked_factor(mechanism))
@@ -241,14 +241,14 @@ def misalign(
     mechanism: Mechanism,
     *,
     instance: Annotated[
-        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link to the ground. Default: each of them in turn.")
+        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link to the ground. Default: all, one by one.")
     ] = "",
     rotation: Annotated[
         str,
         text_option(
             "--rotation",
             "AXIS",
-            "Axis of rotation in the frame of the instance or link: x, y or z. Default: y; without --instance, each of the three.",
+            "Axis of rotation in the frame of the instance or link: x, y or z. Default: y; without --instance, all three axes.",
         ),
     ] = "",
     translation: Annotated[

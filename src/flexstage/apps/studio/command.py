@@ -18,12 +18,12 @@ def studio(
     *,
     port: Port = 0,
     browser: Annotated[
-        bool, typer.Option("--browser/--no-browser", help="Opening of a browser window; with --no-browser, only the address is printed.")
+        bool, typer.Option("--browser/--no-browser", help="Open a browser window; with --no-browser, print only the address.")
     ] = True,
 ) -> None:
     """Open a stage in the browser, and edit it.
 
-    The page is served to this computer only. Its address contains a key. Ctrl+C ends the command.
+    The page is served to this computer only, at an address with a secret key. Ctrl+C ends the command.
 
     A file with errors can be opened too; the errors are shown at their lines.
     """

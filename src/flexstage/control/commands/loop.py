@@ -50,7 +50,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     options: LoopOptions,
     place: OperatingPointOptions,
     *,
-    compare: Annotated[bool, typer.Option("--compare", help="Comparison of PI, PID, integral resonant control and LQG.")] = False,
+    compare: Annotated[bool, typer.Option("--compare", help="Compare PI, PID, integral resonant control and LQG.")] = False,
     fea: Annotated[bool, FEA] = False,
     record: Annotated[list[Path] | None, RECORD] = None,
     inputs: Inputs = None,
@@ -69,7 +69,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     ] = None,
     hardware: Annotated[Path | None, text_option("--hardware", "FILE.c", "C code of the controller: FILE.c, FILE.h, FILE_test.c.")] = None,
     full: Full = False,
-    float32: Annotated[bool, typer.Option("--float32", help="32-bit floating-point numbers in the code of --hardware.")] = False,
+    float32: Annotated[bool, typer.Option("--float32", help="Use 32-bit floating-point numbers in the code of --hardware.")] = False,
     example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Commented set-up file to write, without a computation.")] = None,
 ) -> CommandResult | None:
     """Close the control loop of a stage.
@@ -77,12 +77,12 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     Tunes a controller, and prints bandwidth, stability margins, settling time and positioning noise by source.
 
     By default, the plant is the lumped model, sampled at 10 kHz with one sample of delay. The controller is PI with notch filters, or PID
-    for force-driven stages. It is optimised for a peak sensitivity of at most 6 dB; --quick omits the optimisation.
+    for force-driven stages. An optimisation with a peak sensitivity of at most 6 dB tunes the controller; --quick omits the optimisation.
 
     With --at, --load, --fixed or --temperature, the plant is linearised at that operating point.
 
-    With --record, the plant is the identified model of the test. With --fea, it is a finite-element model of the nominal stage, with
-    frequencies accurate to 1 %.
+    With --record, the plant is the identified model of the test. With --fea, the plant is a finite-element model of the nominal stage,
+    with frequencies accurate to 1 %.
 
     Example of a comparison: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
     """

@@ -27,8 +27,8 @@ def serve(
 ) -> None:
     """Serve a virtual controller of a stage over TCP.
 
-    Simulates the same loop as flexstage loop. Programs on this computer control it with commands of the General Command Set 2.0. Ctrl+C
-    ends the command.
+    Simulates the same loop as flexstage loop. Programs on this computer send commands of the General Command Set 2.0 to the
+    controller. Ctrl+C ends the command.
     """
     asked = LoopSetup() if setup is None else load_setup(setup)
     stage = StageController(open_design(design, changes), asked)

@@ -43,7 +43,7 @@ def identify(
 
     Prints frequencies and damping with 95 % intervals, and shapes. The identification is automatic.
 
-    A fault of a channel is an error unless --accept-fault accepts it.
+    The command refuses a record with faulty channels, unless you accept the fault with --accept-fault.
     """
     texts = replace(texts, excitation=excitation)
     mechanism = None if stage is None else open_design(stage)

@@ -60,7 +60,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     gauge_noise: GaugeNoise = None,
     resolution: GaugeResolution = None,
     drift: Annotated[
-        str, typer.Option("--drift", metavar="VALUE", help="Standard deviation of each gauge's random walk after a minute.")
+        str, typer.Option("--drift", metavar="VALUE", help="Drift of each gauge: standard deviation of a random walk after one minute.")
     ] = "0 nm",
     input_signal: Annotated[
         InputSignal,
@@ -81,8 +81,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 ) -> None:
     """Test a stage on a virtual rig; write the record.
 
-    Simulates actuators driven by noise through amplifiers, the stage, gauges with noise, drift and quantisation, the anti-alias filter
-    and sampling.
+    Simulates the test: noise drives the actuators through amplifiers; the gauges of the stage have noise, drift and quantisation; their
+    readings are filtered and sampled.
 
     The same seed gives the same file.
     """

@@ -47,13 +47,13 @@ def update(  # noqa: PLR0913 (its options)
     model_error: Annotated[
         str, typer.Option("--model-error", metavar="SHARE", help="Relative standard deviation of the theoretical frequencies.")
     ] = "0.1 %",
-    gain: Annotated[bool, typer.Option("--gain", help="Use static gains from actuators to gauges as further data.")] = False,
+    gain: Annotated[bool, typer.Option("--gain", help="Also use the static gains from actuators to gauges as data.")] = False,
     gain_error: Annotated[
         str,
         typer.Option(
             "--gain-error",
             metavar="SHARE",
-            help="Standard deviation of static gains (theory, gauges and drives), relative to the largest gain of each actuator.",
+            help="Standard deviation of static gains with scale errors of gauges and drives, relative to each actuator's largest gain.",
         ),
     ] = "0.1 %",
     texts: RecordTexts,
@@ -62,7 +62,7 @@ def update(  # noqa: PLR0913 (its options)
 
     Uses Bayesian least squares. Prints values, standard deviations, correlations and identifiable combinations.
 
-    Writes a new design file. It keeps all comments; updated values have a tag.
+    Writes a new design file with all comments, in which updated values have a tag.
     """
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)

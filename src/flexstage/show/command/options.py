@@ -116,7 +116,7 @@ InputDensities: TypeAlias = Annotated[
     text_option(
         "--input-asd",
         "INPUT=DENSITY",
-        "White noise: amplitude spectral density of an input, its velocity or its acceleration. The unit selects one of the three, e.g. "
+        "Amplitude spectral density of white noise: of an input, its velocity or its acceleration, as the unit specifies, e.g. "
         '"ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
     ),
 ]
@@ -135,7 +135,7 @@ AmplifierValues: TypeAlias = Annotated[
     text_option(
         "--amplifier",
         "VALUE",
-        "Amplifier bandwidth, output resistance or maximum current, by unit: e.g. 500Hz, 50ohm or 0.2A. Default: ideal. Repeatable.",
+        "Bandwidth, output resistance or maximum current of the amplifier, e.g. 500Hz, 50ohm or 0.2A. Default: ideal. Repeatable.",
     ),
 ]
 
@@ -157,9 +157,9 @@ STEPS = typer.Option(
 
 Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
 
-Full: TypeAlias = Annotated[bool, typer.Option("--full", help="All tables and notes instead of a summary.")]
+Full: TypeAlias = Annotated[bool, typer.Option("--full", help="Print all tables and notes instead of a summary.")]
 
-FEA = typer.Option("--fea", help="Finite-element results, read from the cache or computed.")
+FEA = typer.Option("--fea", help="Use finite-element results, which are read from the cache or computed.")
 
 Point: TypeAlias = Annotated[
     str, typer.Option("--point", metavar="POINT", help="Point whose displacement is computed: the platform or a named point.")
@@ -169,6 +169,6 @@ Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "HTML
 
 Study: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
 
-Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Continuation of an interrupted computation from its kept results.")]
+Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Continue an interrupted computation from its stored results.")]
 
 Workers: TypeAlias = Annotated[int | None, text_option("--workers", "N", "Number of processes. Default: one per core.")]

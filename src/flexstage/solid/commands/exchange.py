@@ -40,8 +40,8 @@ def cad(
 ) -> None:
     """Write a stage as solids.
 
-    Writes a STEP assembly of named solids (--output), the mesh (--mesh) or animated modes (--gltf). --order is for --mesh and --gltf,
-    --modes is for --gltf.
+    Writes a STEP assembly of named solids (--output), the mesh (--mesh) or animated modes (--gltf). --order applies to --mesh and
+    --gltf; --modes applies to --gltf.
 
     Gaps, overlaps and nearly coincident faces are errors with --mesh and --gltf, otherwise warnings.
     """
@@ -69,7 +69,7 @@ def state(
 
     Prints the TOML table for the design file: file, digest, size, mass, centre of mass and inertia.
 
-    Models with rigid bodies use these values. The solid model uses the geometry of the file, and compares the values with the geometry.
+    Models with rigid bodies use these values. The solid model uses the geometry of the file, and checks these values against it.
     """
     mechanism = load(design)
     chosen = _material(mechanism, material)
@@ -95,8 +95,8 @@ def superelement(
     Writes stiffness and mass for the motions of the ports and for the modes with fixed ports. Prints the TOML table of the part, for a
     design file in the folder of the matrices.
 
-    The solid includes all links and bodies that are one piece with SOLID. Its ports are the end faces of links between it and other bodies,
-    stacks or the ground.
+    The solid includes all links and bodies that are one piece with SOLID. The ports are the end faces of links that join this solid to
+    other bodies, stacks or the ground.
     """
     mechanism = open_design(design, changes, [("--output", output)])
     require_solver()

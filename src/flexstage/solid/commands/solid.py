@@ -82,7 +82,9 @@ Accuracy: TypeAlias = Annotated[
 ]
 Order: TypeAlias = Annotated[
     int | None,
-    order_option(min=2, help="Polynomial order of the elements. Default: raised until the accuracy is met.", show_default=False),
+    order_option(
+        min=2, help="Polynomial order of the elements. Default: increased until the required accuracy is reached.", show_default=False
+    ),
 ]
 Memory: TypeAlias = Annotated[
     str | None,
@@ -163,8 +165,8 @@ def verify(
 ) -> CommandResult:
     """Compare theory with finite elements.
 
-    Compares the results of four models for hinges, units and the whole stage: axial springs, lumped, lumped with calibrated hinges, and
-    FEA. Results with calibrated parts are not independent of FEA.
+    For hinges, units and the whole stage, compares four models: axial springs, lumped, lumped with calibrated hinges, and FEA. Results
+    with calibrated parts are not independent of FEA.
     """
     resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
@@ -216,8 +218,8 @@ def calibrate(
 ) -> CommandResult:
     """Compute the 6x6 compliance of hinges by finite elements.
 
-    Writes a design file in which hinges have compliance matrices from FEA, for a more accurate lumped model. Comments and the drawn hinges
-    are kept.
+    Writes a design file in which hinges have compliance matrices from FEA, for a more accurate lumped model. Comments and the
+    original hinges are kept.
     """
     resolution = options.resolution
     text = read_text(design)
