@@ -92,8 +92,8 @@ def superelement(
 ) -> None:
     """Reduce one solid of a stage to a superelement.
 
-    Writes stiffness and mass matrices for the motions of the ports and the modes with fixed ports. Prints the TOML table of the part, for a
-    design file in the folder of the matrices.
+    Writes stiffness and mass matrices for the motions of the ports and the modes with fixed ports. Prints the TOML table of the part, for
+    a design file in the folder of the matrices.
 
     The solid includes all links and bodies that are one piece with SOLID. The ports are the end faces of links that join this solid to
     other bodies, stacks or the ground.
