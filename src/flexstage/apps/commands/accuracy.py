@@ -115,7 +115,7 @@ def drift(
         text_option(
             "--ground",
             "MATERIAL",
-            'Material of the ground, or "none" for a ground without expansion. Default: as in the design, otherwise of links at the ground.',
+            'Material of the ground, or "none" for no thermal expansion. Default: as in the design, otherwise of links at the ground.',
         ),
     ] = None,
 ) -> CommandResult:
