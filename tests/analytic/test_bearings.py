@@ -109,7 +109,8 @@ def test_undefined_statics_are_named():
     assert analysis.statics is not None
     assert "without stiffness" in analysis.missing["force_workspace"]
     assert floating_line(analysis.linear) == (
-        "No stiffness along x, driven by motor: a mode at 0 Hz. Static stiffness, and strokes under force, are undefined along these axes."
+        "Motion along x, driven by motor, has no stiffness: a mode at 0 Hz. "
+        "Static stiffness, and strokes under force, are undefined along these axes."
     )
 
 

@@ -130,7 +130,7 @@ def test_a_chain_of_flexures_is_one_flexure(monkeypatch: pytest.MonkeyPatch):
     along = pressed.state.model.reference[:-1, 0]
     assert pressed.shape[:, 1] / pressed.shape[np.argmax(along), 1] == pytest.approx(1.0 - np.cos(0.5 * np.pi * along), abs=1e-6)
     monkeypatch.setattr(linearised, "MEMORY", 1e6)
-    with pytest.raises(DesignError, match="598 coordinates; its dense matrices of"):
+    with pytest.raises(DesignError, match="598 coordinates; its dense matrices need"):
         linearise(found)
 
 

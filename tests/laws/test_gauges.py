@@ -212,7 +212,7 @@ def test_readings_keep_their_units_in_responses_tests_and_loops(stage):
         ({"G": Probe("gap", PLATFORM, Pose())}, "gauges.G: positive missing"),
         (
             {"T": Probe("tilt", PLATFORM, Pose(), SensorSense.OPENS)},
-            "gauges.T.positive: tilt measures no gap that opens, but motion along or about its x axis",
+            "gauges.T.positive: tilt does not measure a gap, but motion along or about its x axis",
         ),
         ({"G": Probe("strain", PLATFORM, Pose())}, "gauges.G: link missing for strain, a gauge on a link"),
         ({"G": LinkProbe("strain", "B7/pzt")}, 'gauges.G.link: unknown link "B7/pzt". Use'),

@@ -95,7 +95,7 @@ def test_designs_of_another_mobility_are_told_apart() -> None:
     """A bipod whose strut leaves its plane has motions that the drawn one has not, and in turn."""
     drawn, moved = (fs.ideal(scaled(*MOUNT, factor)).mobility for factor in (1.0, 1.003))
     assert drawn != moved
-    with pytest.raises(DesignError, match=r"design 2 of the batch has other motions than the first.*one by one"):
+    with pytest.raises(DesignError, match=r"design 2 of the batch differs from the first design in its motions.*one by one"):
         fs.ideal(scaled(*MOUNT, (1.0, 1.003, 0.998)))
     assert fs.ideal(scaled(*MOUNT, (1.003, 0.998))).mobility == moved
 

@@ -132,7 +132,7 @@ def test_designs_that_fall_under_their_weight_have_no_values(tmp_path: Path, res
     assert "0.707 (mass 14 kg)" in loaded_findings(study)[0].what
 
 
-@pytest.mark.parametrize(("most", "words"), [(0.05, ""), (0.3, "Measures over a path"), (1.0, "Add to [limits]")])
+@pytest.mark.parametrize(("most", "words"), [(0.05, ""), (0.3, "measures over a path"), (1.0, "Add to [limits]")])
 def test_a_study_warns_from_one_per_cent_of_stiffness(tmp_path: Path, most: float, words: str):
     """The load factor is about 9.9 kg over the mass."""
     mass = f'variables.mass = {{ address = "bodies.platform.mass", from = "1 g", to = "{most} kg", levels = 2 }}'

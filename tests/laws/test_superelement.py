@@ -373,13 +373,13 @@ WRONG = {
         lambda body: broken(
             body, ports={**body.ports, "left": replace(body.ports["left"], row=7), "right": replace(body.ports["right"], row=1)}
         ),
-        "if the rows of right and left are exchanged",
+        "Exchange the rows of right and left",
     ),
     "places in metres": (
         lambda body: broken(
             body, ports={name: replace(port, at=tuple(1e-3 * each for each in port.at)) for name, port in body.ports.items()}
         ),
-        "or with the ports a thousand times farther apart",
+        "or move the ports a thousand times farther apart",
     ),
     "a frame turned": (
         lambda body: broken(body, ports={**body.ports, "top": replace(body.ports["top"], along=(1.0, 0.0, 0.0), up=(0.0, 0.0, 1.0))}),

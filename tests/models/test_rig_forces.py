@@ -87,7 +87,7 @@ def test_what_no_coil_has_is_refused_by_name() -> None:
     assert isinstance(coil, fs.VoiceCoil)
     coil = replace(coil, peak_current=None, continuous_current=None, temperature_rise=None)
     bare = replace(STAGE, parts={**STAGE.parts, "coil": coil})
-    assert "its sustained limit, which defines the default drive, is unknown" in refusal(SETUP, bare)
+    assert "its sustained limit is unknown, so there is no default drive" in refusal(SETUP, bare)
     assert rig(bare, MODEL, replace(SETUP, drive=replace(BAND, current=0.01))).length == 25_600
 
 

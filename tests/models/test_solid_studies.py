@@ -305,7 +305,7 @@ def test_given_parts_are_drawn_as_what_they_stand_for() -> None:
     stands = replace(stage, parts={**stage.parts, "old": stage.parts["leaf"], "leaf": fs.ComplianceMatrix(unit, free=(), replaces="old")})
     assert with_drawn_parts(stands).parts["leaf"] == stage.parts["leaf"]
     lost = replace(stage, parts={**stage.parts, "leaf": fs.ComplianceMatrix(unit, free=(), replaces="gone")})
-    with pytest.raises(DesignError, match=r'parts\.leaf\.replaces: unknown part "gone"\. Keep the drawn part'):
+    with pytest.raises(DesignError, match=r'parts\.leaf\.replaces: unknown part "gone"\. Restore the drawn part'):
         with_drawn_parts(lost)
 
 

@@ -131,7 +131,7 @@ def test_a_comparison_without_any_partner_is_drawn(seen: Identification) -> None
 def test_the_table_says_what_was_found(seen: Identification) -> None:
     rows = identified_table(seen.found).texts()[1:]
     assert [float(row[1]) for row in rows] == pytest.approx(seen.found.frequencies.tolist(), rel=1e-5)
-    assert "Modes 1 and 2 are closer than their half-widths: compare their subspace." in identified_table(seen.found).notes
+    assert "Modes 1 and 2 are closer than their half-widths: compare the subspace of their shapes." in identified_table(seen.found).notes
     shapes = measured_shape_table(seen.found).texts()[1:]
     assert np.array([[float(cell) for cell in row[1:]] for row in shapes]) == pytest.approx(seen.found.real_shapes, abs=1e-3)
 

@@ -11,7 +11,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 
 NOISE = 1e-9
-NOISE_RULE = "Entries below 1e-9 of the geometric mean of the largest entries (SI) in their row and column are rounding noise, shown as 0."
+NOISE_RULE = "0: rounding noise, below 1e-9 times the geometric mean of the largest entries (in SI units) of its row and its column."
 """Note for tables: the rule by which rounding noise is shown as 0."""
 
 

@@ -250,7 +250,7 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         end = f"half the sampling rate, {0.5 / (closed.step or np.nan):g} Hz"
         yield f"{', '.join(bare)}: no specified bandwidth or filter; noise is limited to {end}"
     if len(bare) < len(sensors) - len(silent):
-        yield "gauge noise is assumed white before lag and filter; its aliasing from above half the sampling rate is computed exactly"
+        yield "gauge noise is assumed white before lag and filter; aliasing of its part above half the sampling rate is computed exactly"
     if budget.slowly_rounding:
         units = {channel.name: channel.unit for channel in given.coordinates.readings()}
         half = ", ".join(
@@ -259,9 +259,9 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         )
         most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slowly_rounding)
         yield (
-            "rounding is counted as white noise, but it is not white: the readings of "
-            f"{', '.join(budget.slowly_rounding)} change by at most {most:.2g} steps rms from sample to sample, and white rounding needs "
-            f"half a step. A reading at rest may be wrong by half a step ({half}), which the loop cannot correct"
+            f"rounding of the readings of {', '.join(budget.slowly_rounding)} is counted as white noise, but it is not white: from sample "
+            f"to sample, these readings change by at most {most:.2g} steps (rms), and white rounding requires half a step. A reading at "
+            f"rest may be wrong by half a step ({half}), which the loop cannot correct"
         )
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
     if quiet:

@@ -138,7 +138,9 @@ class FurtherMode:
     TABLE: ClassVar[Layout] = Layout(
         "Further measured modes",
         "experiment.number experiment.frequency experiment.frequency_interval experiment.widening experiment.damping name theory assurance",
-        notes=("Modes of single units, of the ground or of the support. Pairing of local modes by sensor motions alone is less reliable.",),
+        notes=(
+            "Modes of single units, of the ground or of the support. Pairing local modes by motions at sensors alone is less reliable.",
+        ),
     )
 
     experiment: Measured

@@ -20,7 +20,7 @@ def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
     """
     stand_ins = {name: part.replaces for name, part in mechanism.parts.items() if isinstance(part, ComplianceMatrix) and part.replaces}
     require(
-        Finding(f"parts.{name}.replaces", f'unknown part "{kept}"', "Keep the drawn part that was calibrated in the file")
+        Finding(f"parts.{name}.replaces", f'unknown part "{kept}"', "Restore the drawn part that this compliance matrix replaces")
         for name, kept in stand_ins.items()
         if kept not in mechanism.parts
     )

@@ -390,7 +390,9 @@ def _sees_in_batch(name: str, row: Array, motions: Array) -> bool:
     """`_sees`, required to be equal in all designs of a batch."""
     flags = np.ravel(_sees(row, motions))
     if np.any(flags != flags[0]):
-        raise unlike(int(np.argmax(flags != flags[0])), f"differs from the first design in whether {name} sees a free internal mode")
+        raise unlike(
+            int(np.argmax(flags != flags[0])), f"differs from the first design in whether {name} is affected by a free internal mode"
+        )
     return bool(flags[0])
 
 
@@ -408,14 +410,14 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
             element = next((each for each, item in _hinges(graph).items() if name in {weld.name for weld in item.welds()}), None)
             if element is not None:
                 what = (
-                    f"sees a free internal mode in the specified degrees of freedom of {element}, whose stiffness is unknown in this model"
+                    f"affected by a free internal mode in specified degrees of freedom of {element}; this model has no stiffness for them"
                 )
                 raise refuse(", ".join(watching), what, "Move the gauge to the platform, or remove these degrees of freedom")
             try:
                 yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
             except DesignError as error:
                 reason = "; ".join(finding.what for finding in error.findings)
-                what = f"sees a free internal mode, and the stiffness of {name} is unknown: {reason}"
+                what = f"affected by a free internal mode, which strains {name}, whose stiffness is unknown: {reason}"
                 raise refuse(", ".join(watching), what, "Specify the stiffness, or move the gauge to the platform") from error
 
 
@@ -425,7 +427,7 @@ def _split_batch(energy: Array) -> tuple[list[int], Array]:
     stored = splits[0][0]
     for number, (other, _) in enumerate(splits):
         if other != stored:
-            raise unlike(number, "has other free internal modes with elastic resistance than the first design")
+            raise unlike(number, "differs from the first design in its free internal modes with elastic resistance")
     loose = np.stack([each for _, each in splits])
     return stored, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
 
@@ -447,10 +449,10 @@ def _undetermined_findings(graph: _Graph, gauges: list[str], motions: Array) -> 
     moving = np.max(np.abs(_by_link(motions)), axis=(1, 2), initial=0.0) > _NEGLIGIBLE * np.max(np.abs(motions), initial=0.0)
     bodies = ", ".join(itertools.compress(graph.order.bodies, moving))
     for name in gauges:
-        what = "its reading does not follow from" if name in graph.assembly.gauges else "its force does not reach"
+        what = "its reading does not follow from" if name in graph.assembly.gauges else "its force does not drive"
         yield Finding(
             name,
-            f"sees a free internal mode without elastic resistance ({bodies}): {what} the platform's motion",
+            f"affected by a free internal mode without elastic resistance ({bodies}): {what} the platform's motion",
             "Move the gauge to the platform, add stiffness in that degree of freedom to a link of these bodies, or lock it",
         )
 

@@ -337,8 +337,8 @@ def _require_distinguishable(stage: _Stage, loose: Array, basis: Array | None) -
         stiff = max(ends, key=lambda name: ends[name].max())
         raise refuse(
             stiff,
-            f"stiffnesses from {ends[soft].min():.3g} N/m ({soft}) to {ends[stiff].max():.3g} N/m ({stiff}), rotations over 0.1 m, "
-            "differ too much for double precision",
+            f"stiffnesses from {ends[soft].min():.3g} N/m ({soft}) to {ends[stiff].max():.3g} N/m ({stiff}) differ too much for "
+            "double precision (rotational stiffnesses are divided by (0.1 m)^2)",
             f"Check for an extreme value in {stiff} or {soft}, or lock the stiff degrees of freedom",
         )
 
@@ -411,7 +411,7 @@ def _driven_motions(stage: _Stage, inertia: Mapping[str, Contribution], basis: A
     if np.linalg.matrix_rank(moved, tol=_APART) < loose.shape[1] or np.linalg.cond(np.real(first_design(mass, 2))) > 1.0 / _MASSLESS:
         return None
     if max(mass.ndim, full.ndim, thrusts.ndim, laws) > 2 or np.iscomplexobj(mass) or np.iscomplexobj(full):
-        what = "forces drive a motion without stiffness, which is analysed for single designs only"
+        what = "forces drive a motion without stiffness; a batch of designs does not support this"
         raise refuse("stage", what, "Analyse the designs one by one, or add a spring")
     return loose @ np.linalg.inv(np.linalg.cholesky(mass)).T
 
@@ -478,7 +478,7 @@ def _inertial_modes_of_batch(mass: Array, largest: Array) -> tuple[int, ...]:
     first, *others = map(_inertial_modes, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
     for number, heavy in enumerate(others, 1):
         if heavy != first:
-            raise unlike(number, "has inertia in other free internal modes than the first design")
+            raise unlike(number, "differs from the first design in which free internal modes have inertia")
     return first
 
 
@@ -555,7 +555,7 @@ def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[i
             values, loose = _softest(designs[number])
             steady = np.min(values, initial=0.0) >= -SINGULAR  # other designs are NaN: `_stable`
             if steady and (loose.shape[1] != len(named) or _moves_platform(loose, independent) or not _are_distinguishable(loose, named)):
-                raise unlike(number, "has other motions without stiffness than the first design")
+                raise unlike(number, "differs from the first design in its motions without stiffness")
 
 
 def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignError:

@@ -376,7 +376,7 @@ def _compliance(link: PlacedLink) -> Array:
     """Compliance of a link's part; for a restricted part only of its elastic DOFs, as freed ones have no stiffness."""
     part = link.part
     if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
-        raise refuse(link.name, "an ideal joint or a part without axial stiffness, which the unit's stiffness requires", "")
+        raise refuse(link.name, "it has no axial stiffness, which the unit's stiffness requires", "")
     try:
         whole = compliance(part.part if isinstance(part, Restricted) else part, link.material)
     except DesignError as error:

@@ -270,8 +270,9 @@ def _rigid_findings(part: Superelement, at_ports: Array, in_file: Array, frames:
         return 0.0, [Finding("stiffness matrix", "no relative motion of the ports has stiffness", "Check the file")]
     if left > RIGID * softest:
         what = (
-            f"rigid motion of all ports has a stiffness of {left:.3g} N/m (rotations scaled by {_span(frames) * 1e3:.4g} mm): "
-            f"{left / stiffest:.2g} of the stiffest elastic motion and {left / softest:.2g} of the softest (expected at most {RIGID:g})"
+            f"a rigid motion of all ports has a stiffness of {left:.3g} N/m (rotations times {_span(frames) * 1e3:.4g} mm), "
+            f"{left / stiffest:.2g} times that of the stiffest elastic motion and "
+            f"{left / softest:.2g} times that of the softest (expected at most {RIGID:g})"
         )
         return left / softest, [Finding("ports", what, _hint(part, at_ports, in_file, frames))]
     least = float(np.linalg.eigvalsh(at_ports[6:, 6:])[0])
@@ -287,14 +288,14 @@ def _hint(part: Superelement, at_ports: Array, in_file: Array, frames: list[Fram
         scale, energy = _in_si(part, units)
         if units is not part.units and _is_free(energy * scale * in_file * scale[:, None], frames):
             far = "farther apart" if part.units is FileUnits.SI else "closer"
-            return f'Rigid motions are free with units = "{units.value}", or with the ports a thousand times {far}'
+            return f'Use units = "{units.value}", or move the ports a thousand times {far}: rigid motions are then free'
     if _is_free(at_ports, [Frame(np.eye(3), frame.position) for frame in frames]):
-        return "Rigid motions are free if all ports have the axes of the part: remove along and up"
+        return "Remove along and up: rigid motions are free if all ports have the axes of the part"
     for first, second in itertools.combinations(range(len(frames)), 2):
         swapped = list(frames)
         swapped[first], swapped[second] = frames[second], frames[first]
         if _is_free(at_ports, swapped):
-            return f"Rigid motions are free if the rows of {part.order[first]} and {part.order[second]} are exchanged"
+            return f"Exchange the rows of {part.order[first]} and {part.order[second]}: rigid motions are then free"
     return "Check positions and axes of the ports and the order of the rows (x, y, z, rx, ry, rz); export a model without supports"
 
 

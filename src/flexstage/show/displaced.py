@@ -48,7 +48,7 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
 def stroke_tables(found: Stroke) -> list[Table]:
     """Tabulate the results at every point of a stroke, and the static deflection at its start, if any."""
     start = "static equilibrium" if found.sag is not None else "the undeformed configuration"
-    free = "f1 to f3 and the number of unstable modes belong to the stage with a free drive coordinate, under the drive force."
+    free = "f1 to f3 and the number of unstable modes are computed with the drive coordinate free, under the drive force."
     words = f"Displacements are relative to {start}. {free} The stress is the largest von Mises stress of all flexures."
     table = along_table(f"Along {found.drive}", found.along, [words])
     sag = [] if found.sag is None else [matrix_table("Static deflection under weight, loads and temperature change", found.sag)]
@@ -155,9 +155,7 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
     return [
         make_table("Misaligned instance", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
         along_table(f"Along {found.axis}", found.along),
-        matrix_table(
-            f"Loads in flexures at a misalignment of {last}, on each end of a flexure, in the frame of its first end", found.loads
-        ),
+        matrix_table(f"Loads on both ends of each flexure at a misalignment of {last}, in the frame of its first end", found.loads),
     ]
 
 

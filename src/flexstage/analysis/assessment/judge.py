@@ -145,6 +145,6 @@ def _loaded_doubt(bench: StageResults, drawn: Verdict) -> str:
     if loaded.passed:
         return ""
     return (
-        f"withheld: the nominal value is {float(drawn.value):.4g} {line.quantity.si}; softened by weight (load factor {factor:.3g}), "
-        f"the stage may have only {float(np.asarray(loaded.value)):.4g} {line.quantity.si}"
+        f"withheld: the nominal value is {float(drawn.value):.4g} {line.quantity.si}, but weight softens the stage (load factor "
+        f"{factor:.3g}), and the value may be only {float(np.asarray(loaded.value)):.4g} {line.quantity.si}"
     )

@@ -590,7 +590,7 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     """
     axes = [axis for axis, value in bench.command.items() if value]
     if not axes:
-        raise refuse(asked.key, "no required stroke, and so no motion to fix", 'Add e.g. "stroke.x" = "at least 50 um"')
+        raise refuse(asked.key, "no stroke is required, so there is no motion to fix", 'Add e.g. "stroke.x" = "at least 50 um"')
     model = bench.model
     rows = np.real(model.output[..., model.output_index(tuple(f"{PLATFORM}.{axis}" for axis in axes)), :])
     free = scipy.linalg.null_space(rows.reshape(-1, *rows.shape[-2:])[0])

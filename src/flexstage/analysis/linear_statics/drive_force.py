@@ -72,7 +72,7 @@ def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWork
     (True, 1.0)
     """
     if model.is_sparse or model.designs:
-        raise refuse("drive force", "the stage is too large, or a batch of designs", "Analyse one design with fewer bodies")
+        raise refuse("drive force", "not computed for large stages and batches of designs", "Analyse one design with fewer bodies")
     names, inputs = workspace.coordinates, workspace.per_motion
     loads = np.swapaxes(model.output[model.output_index(tuple(f"{workspace.point}.{name}" for name in names))], -1, -2)
     driven = model.input_matrix[:, model.input_index(inputs.rows)] @ inputs.values

@@ -83,7 +83,7 @@ class CaseFactor:
     TABLE: ClassVar[Layout] = Layout(
         "Load cases and stroke ends",
         "load place factor bound kind buckling_mode why",
-        notes=("Only this load grows, all others are constant. Actuators are free if a force brings the stage to the operating point.",),
+        notes=("Only this load grows; all others are constant. Actuators are free if a force brings the stage to the operating point.",),
     )
 
     load: str

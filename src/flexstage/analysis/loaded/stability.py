@@ -66,7 +66,7 @@ class Stability:
     TABLE: ClassVar[Layout] = Layout(
         "Buckling of the stage",
         "dead worst",
-        notes=("Load factor at which the whole stage buckles, linearised; every column has its actual end conditions.",),
+        notes=("Linearised load factor at which the whole stage buckles; each compressed part has its actual end conditions.",),
     )
 
     dead: Annotated[Array, RATIO, Heading("permanent load", digits=4, infinite="none", mark=SAFETY)]
@@ -84,7 +84,7 @@ class Stability:
             return ()
         what = (
             f"the nominal position is unstable: weight, payloads and forces are {1.0 / least:.3g} times the critical load "
-            f"(load factor {least:.3g}), {buckling_clause(' and '.join(self.moving))}"
+            f"(load factor {least:.3g}), at which {buckling_clause(' and '.join(self.moving))}"
         )
         return (Finding("stage", what, "Reduce the load, stiffen the parts in compression, or put them in tension"),)
 
@@ -217,7 +217,7 @@ def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
 
 def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:
     for name in assembly.superelements:
-        what = "geometric stiffness of the superelement unknown, and so its buckling load"
+        what = "the geometric stiffness of the superelement, and thus its buckling load, is unknown"
         yield Finding(name, what, "Check buckling in the program that computed its matrices")
 
 

@@ -52,7 +52,7 @@ class ForceWorkspace(Result):
         "Reach",
         "held held_briefly limited_by",
         head="along",
-        notes=("Elastic motion in both directions. Continuous motion has no time limit; short use is for a coil's duty cycle, `duty`.",),
+        notes=("Elastic motion possible in both directions: continuous without a time limit, short with the duty cycle `duty` of a coil.",),
     )
 
     point: str

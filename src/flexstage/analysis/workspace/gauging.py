@@ -77,7 +77,9 @@ class PoseResolution(Result):
     TABLE: ClassVar[Layout] = Layout(
         "Pose resolution of the gauges",
         "table",
-        notes=("Errors for one step of all gauges: worst signs, independent signs (rms); and rms error due to gauge noise.",),
+        notes=(
+            "Errors if every reading is wrong by one step, with the worst and with independent signs (rms); rms error due to gauge noise.",
+        ),
     )
 
     inverse: Matrix

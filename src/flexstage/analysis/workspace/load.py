@@ -35,7 +35,7 @@ class LoadRange(Result):
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
         notes=(
-            "Strokes from zero voltage, with permanent load, without preload. Tension (negative) is limited by preload plus tensile limit.",
+            "Forces over strokes from zero voltage, with permanent load, not preload. The limit of tension is preload plus tensile limit.",
         ),
     )
 

@@ -59,7 +59,7 @@ class MapError(Result):
     @property
     def notes(self) -> tuple[str, ...]:
         """Note on rounding."""
-        return ("0: rounding noise of the positions.",) if np.any(first_design(self.worst, 1) == 0.0) else ()
+        return ("0: within the rounding error of the positions.",) if np.any(first_design(self.worst, 1) == 0.0) else ()
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:

@@ -209,7 +209,7 @@ def _closed_loop(mechanism: Mechanism, options: Any) -> CommandResult:
     from flexstage.control.study.study import loop_study
 
     if options:
-        what = "the drive direction has no stiffness, so the budget is computed for a closed loop, without options"
+        what = "these options do not apply: the drive direction has no stiffness, so the budget is computed for a closed loop"
         raise refuse("budget", what, "Remove --command, --temperature, --point, --input-asd and --band, or use flexstage loop")
     found = loop_study(mechanism, LoopSetup(controller=ControllerSetup(quick=True)))
     controller = f"the controller of flexstage loop --quick ({controller_text(found)})"

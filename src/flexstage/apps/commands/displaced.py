@@ -208,7 +208,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
     if least is None or least.found is None:
         raise refuse("--post-buckling", "the stage does not buckle", "Remove --post-buckling, or specify a larger load")
     if least.found.state.held:
-        what = f"the lowest factor belongs to {least.load} at {least.place}, where coordinates are prescribed"
+        what = f"coordinates are prescribed at {least.place}, where the load factor (of {least.load}) is lowest"
         raise refuse("--post-buckling", what, "Remove --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
     path = follow(least.found, grows, side=1.0 if branch is BranchSide.ALONG else -1.0, points=points)

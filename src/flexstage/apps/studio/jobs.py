@@ -87,7 +87,7 @@ class Jobs:
             if "\0" in option:
                 raise refuse(request.command, "an option has a null character", "Remove the option")
             if option.partition("=")[0] in _WRITING:
-                raise refuse(request.command, f"the studio sets {option}", "Remove this option")
+                raise refuse(request.command, f"the studio itself sets {option}", "Remove this option")
         number = len(self._jobs) + 1
         job = _Job(
             number, request, self.path, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None)

@@ -38,8 +38,8 @@ class DampedMode:
         "frequency zero ratio most alone damped_frequency damped_ratio",
         notes=(
             (
-                "The transmission zero z is the frequency without the stacks' axial stiffness. The maximum damping (w - z)/(2 z) applies "
-                "to one leg or decoupled legs. The isolated mode has this gain, but no other modes, structural damping or amplifier lag."
+                "The transmission zero z is the mode's frequency without the stacks' axial stiffness, w with it. The maximum damping, "
+                "(w - z)/(2 z), is for one leg or decoupled legs. Isolated mode: no other modes, structural damping or amplifier lag."
             ),
         ),
     )
@@ -67,7 +67,9 @@ class ActiveDamping:
     TABLE: ClassVar[Layout] = Layout(
         "Remaining stiffness with IFF",
         "left_at_rest softest softest_at",
-        notes=("Fraction of the platform's stiffness that remains at rest, and its minimum below half the first mode's frequency.",),
+        notes=(
+            "Fraction of the platform's stiffness that remains at 0 Hz, and the smallest fraction below half the first mode's frequency.",
+        ),
     )
 
     legs: tuple[str, ...]

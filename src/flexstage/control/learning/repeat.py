@@ -75,10 +75,10 @@ def repeater(closed: Loop, control: System, period: float, gain: float, spread: 
             worse = _amplification(own, own - moved[_OFFSETS // 2] @ taught, closed.plant.coordinates.scale)
             return replace(found, contraction=contraction, amplifies=worse)
         end *= _LOWER
-    said = f"no filters reduce an error of period {period:.4g} s (first harmonic {1.0 / period:.4g} Hz)"
+    said = f"no filter reduces an error with a period of {period:.4g} s (first harmonic {1.0 / period:.4g} Hz)"
     raise refuse(
         "follow",
-        f"{said} to less than {100.0 * _CONTRACTS:g} % of its size from one period to the next",
+        f"{said} to less than {100.0 * _CONTRACTS:g} % from one period to the next",
         "Use a longer period (a slower scan), a smaller gain or spread, or iterative learning",
     )
 

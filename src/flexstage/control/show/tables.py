@@ -80,7 +80,8 @@ def loop_table(found: LoopStudy) -> Table:
         peaks = {"sensitivity Ms": found.peaks.sensitivity, "complementary sensitivity Mt": found.peaks.complementary}
         rows += [(f"peak {name}", f"{number(each.value, 4)} at {number(each.frequency, 4)} Hz") for name, each in peaks.items()]
         notes.append(
-            "The sensitivity S is the error per disturbance: above 1, the loop amplifies it. The complementary sensitivity is T = 1 - S."
+            "The sensitivity S is the error per disturbance; where S exceeds 1, the loop amplifies disturbances. The complementary "
+            "sensitivity is T = 1 - S."
         )
         notes.append("Peak sensitivities are computed without mode shifts.")
     if not found.retention.complete or found.retention.frequency is not None:
@@ -99,7 +100,7 @@ def _retained(found: Retention) -> str:
         )
     largest = f"{number(found.gain, 3)} at resonance ({number(found.frequency or 0.0, 4)} Hz)"
     change = "make a margin appear or vanish" if np.isinf(found.change) else f"change margins by at most {percent(found.change)}"
-    why = "by loop gain with this controller; the others add their static compliance"
+    why = "selected by their loop gain with this controller. Omitted modes contribute their static compliance"
     return f"{count}, {why}. The largest loop gain of an omitted mode is {largest}. All omitted modes together {change}."
 
 

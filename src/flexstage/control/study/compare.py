@@ -81,7 +81,7 @@ class ComparedController:
         "crossover worst_noise slowest_settling largest_overshoot delay_margin peak gauge_share",
         head="controller",
         notes=(
-            "Values are the worst of all coordinates. Noise of the gauges is their fraction of the mean square, including quantisation.",
+            "Values are the worst of all coordinates. Noise of the gauges: their fraction of the mean square noise, with quantisation.",
             "{self.tuned}.",
         ),
     )

@@ -118,8 +118,8 @@ class LegUse:
         head="trajectory, actuator",
         notes=(
             (
-                "Total stroke and speed (controller plus force feedback) are relative to the amplifier's limits. "
-                "The simulation does not apply these limits."
+                "Total stroke and speed (controller plus force feedback), relative to the amplifier's limits, which the simulation does "
+                "not apply."
             ),
         ),
     )

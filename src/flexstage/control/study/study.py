@@ -284,7 +284,7 @@ def _whole_growth(given: ResolvedSetup, control: Control) -> float:
 def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
     """Warnings for rounding that is not white noise."""
     if noise.slowly_rounding:
-        what = f"readings of {', '.join(noise.slowly_rounding)} change by less than half a step per sample: rounding is not white noise"
+        what = f"readings of {', '.join(noise.slowly_rounding)} change by less than half a step per sample, so rounding is not white noise"
         advice = "Use the simulated rms and its interval. A finer resolution, or noise of half a step, makes rounding white"
         yield Finding("gauges", what, advice)
 
@@ -312,7 +312,7 @@ def _warnings(given: ResolvedSetup) -> list[Finding]:
             found.append(Finding("damping", f"no specified sensor noise for the legs of {', '.join(quiet)}", "Specify damping.noise"))
     if given.setup.hysteresis is not None and given.charge is not None:
         left, corner = 100.0 * float(np.max(given.charge.residual_hysteresis)), float(np.max(given.charge.corners))
-        what = f"charge drive reduces the simulated hysteresis to {left:.3g} % above {corner:.3g} Hz, but has no effect far below"
+        what = f"above {corner:.3g} Hz, charge drive reduces the simulated hysteresis to {left:.3g} %; far below, it has no effect"
         found.append(
             Finding(
                 "hysteresis",

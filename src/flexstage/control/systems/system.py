@@ -127,7 +127,7 @@ def _findings(system: System) -> Iterable[Finding]:
         if found != shape:
             yield Finding(
                 f"matrix {name}",
-                f"wrong shape (got {found}, expected {shape} by states, inputs and outputs)",
+                f"wrong shape (got {found}, expected {shape} for these states, inputs and outputs)",
                 "Use matrices of matching shapes",
             )
     for kind, names in (("input", system.input_names), ("output", system.output_names)):

@@ -122,7 +122,7 @@ class Identified(InNotebook):
             return (f"No mode was found {band}",)
         late, spread = 1e3 * self.delay, 1e3 * NORMAL_95 * self.delay_deviation
         close = (
-            f"Modes {' and '.join(map(str, group))} are closer than their half-widths: compare their subspace."
+            f"Modes {' and '.join(map(str, group))} are closer than their half-widths: compare the subspace of their shapes."
             for group in self.close_modes
         )
         delay = (

@@ -327,7 +327,7 @@ def rising_problem(frequencies: Array) -> str | None:
         return None
     line = int(falling[0])
     first, second = frequencies[line], frequencies[line + 1]
-    how = f"{first:g} Hz occurs twice, as" if first == second else f"{second:g} Hz follows {first:g} Hz, as"
+    how = f"{first:g} Hz occurs twice, as" if first == second else f"{first:g} Hz, then {second:g} Hz, as"
     return f"its frequencies do not increase: {how} values {line + 1} and {line + 2}"
 
 

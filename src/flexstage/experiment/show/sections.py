@@ -106,8 +106,8 @@ def stabilisation_section(found: Identified) -> Section | None:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
     caption = (
-        "Poles of increasing order. A pole is stable if it differs from one of the order below by less than 0.2 % in frequency and 5 % in "
-        "damping, and if the MAC of their participations exceeds 0.98."
+        "Poles of models of increasing order. A pole is stable if it differs from one of the order below by less than 0.2 % in frequency "
+        "and 5 % in damping, and if the MAC of their participations exceeds 0.98."
     )
     return section("Stabilisation", [Picture(drawn, caption)])
 

@@ -116,7 +116,7 @@ def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterato
         if np.isnan(driven.factor(quantity)):
             yield Finding(name, f"its input is a {own}, not a {quantity.value}", f'Use {own}, for example --drive-rms "{example}"')
     if not setup.drive.amounts and np.isnan(driven.full):
-        yield Finding(name, "its sustained limit, which defines the default drive, is unknown", f'Use for example --drive-rms "{example}"')
+        yield Finding(name, "its sustained limit is unknown, so there is no default drive", f'Use for example --drive-rms "{example}"')
     if setup.amplifier.resistance is not None:
         yield Finding(name, "an output resistance requires the capacitance of a stack", "Specify the amplifier's bandwidth in Hz")
 

@@ -118,7 +118,7 @@ def require_room(assembly: Assembly, matrices: float) -> None:
 
     def fits(there: float) -> str:
         most = int(np.sqrt(there / needed) * bodies)
-        return f"About {most:,} bodies fit, with as many links per body; join bodies without relative motion, or analyse parts of the stage"
+        return f"Join bodies without relative motion, or analyse parts of the stage: about {most:,} bodies with as many links per body fit"
 
     require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, fits)
 

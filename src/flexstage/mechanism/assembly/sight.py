@@ -139,7 +139,7 @@ def _place_findings(where: str, key: str, place: Probe | LinkProbe, gauge: Instr
     elif gauge.gap and place.positive is None:
         yield Finding(where, "positive missing", 'Use e.g. positive = "opens"')
     elif not gauge.gap and place.positive is not None:
-        what = f"{place.gauge} measures no gap that {place.positive.value}, but motion along or about its x axis"
+        what = f"{place.gauge} does not measure a gap, but motion along or about its x axis"
         yield Finding(f"{where}.positive", what, "Remove positive; to change the sign, reverse the x axis of the gauge")
 
 

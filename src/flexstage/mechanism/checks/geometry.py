@@ -211,7 +211,7 @@ def _inertia(where: str, inertia: Inertia) -> Iterator[Finding]:
     if np.any(failing):
         at, values = first_failing(failing, *np.moveaxis(principal, -1, 0))
         text = ", ".join(f"{value:.6g}" for value in values)
-        what = f"invalid principal moments (got {text} kg m^2, expected none negative or above the sum of the other two)"
+        what = f"invalid principal moments (got {text} kg m^2, expected each between 0 and the sum of the other two)"
         yield Finding(f"{where}{at}", what, "Check the moments and the signs of the products")
 
 

@@ -110,10 +110,12 @@ def _owners(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _check_known(f"{where}.of", "body of the stage", body.of, {GROUND, *stage})
         owner = stage.get(body.of)
         if where == f"bodies.{PLATFORM}":
-            yield Finding(f"{where}.of", "the platform cannot belong to another body", 'Set of = "platform" for the other body')
+            yield Finding(
+                f"{where}.of", "the platform cannot belong to another body", 'Remove this key; specify of = "platform" in the other body'
+            )
         elif owner is not None and owner.of is not None:
             what = f'"{body.of}" belongs to another body, "{owner.of}"'
-            yield Finding(f"{where}.of", what, f'Use of = "{owner.of}"' if owner is not body else "Use another body, or remove 'of'")
+            yield Finding(f"{where}.of", what, f'Specify of = "{owner.of}"' if owner is not body else "Use another body, or remove 'of'")
 
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:

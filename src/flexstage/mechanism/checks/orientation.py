@@ -51,9 +51,9 @@ def _links(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
     if ported:
-        return f'bends (z axis of the link) missing, as part "{part}" has ports', 'Use e.g. bends = "z"'
-    what = f'bends missing, as part "{part}" is not axisymmetric'
-    return what, 'Use e.g. bends = "y": the axis of its compliant rotation'
+        return f'bends (z axis of the link) missing: part "{part}" has ports', 'Use e.g. bends = "z"'
+    what = f'bends missing: part "{part}" is not axisymmetric'
+    return what, 'Specify the axis of its compliant rotation, e.g. bends = "y"'
 
 
 def is_axisymmetric(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:

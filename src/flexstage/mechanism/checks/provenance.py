@@ -44,7 +44,7 @@ def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
 def _override(mechanism: Mechanism, key: str, place: Place, value: Any) -> Iterator[Finding]:
     where = f'overrides."{key}"'
     if not any(key.startswith(f"{owner}.") for owner in place.owners):
-        advice = "Set that value directly; addresses of overrides are unit/link.field or instance/link.field"
+        advice = "Set that value directly; an override has the address unit/link.field or instance/link.field"
         yield Finding(where, f"{place.address} is not an override of a link", advice)
         return
     try:

@@ -24,7 +24,7 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
     if law is None:
         raise refuse(
             "damping",
-            "the design specifies no damping, which determines the response at a resonance",
+            "the design specifies no damping, but damping determines the response at a resonance",
             'Specify it in the design, e.g. damping = { law = "modal", ratio = 0.01 }, or pass damping=ModalDamping(0.01)',
         )
     return law

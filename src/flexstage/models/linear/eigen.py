@@ -152,7 +152,7 @@ def _massive(inverse_values: Array, lower: Array, inertia: Array) -> Array:
     if np.any(others := (counts != first) & sound):
         ranks = np.ravel(np.broadcast_to(_rank(inertia), inverse_values.shape[:-1]))
         if np.any(unequal := others & (ranks != ranks[np.argmax(sound)])):
-            raise unlike(int(np.argmax(unequal)), "has another number of modes than the first design")
+            raise unlike(int(np.argmax(unequal)), "differs from the first design in its number of modes")
         first = int(np.max(counts[sound]))
     kept = inverse_values[..., :first]
     return np.where(kept > 0.0, kept, np.nan)

@@ -74,7 +74,7 @@ def _require_served(constraints: Array, scale: Array, choice: _Choice) -> None:
 
 def _require_none(others: Array) -> None:
     if len(others):
-        raise unlike(int(others[0]), "has locked degrees of freedom that depend on each other in another way than in the first design")
+        raise unlike(int(others[0]), "differs from the first design in which locked degrees of freedom depend on each other")
 
 
 def unlike(number: int, what: str) -> DesignError:
@@ -127,7 +127,7 @@ def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], k
         if theirs != mine:
             counts = [f"{len(kept)} of the platform and {others} others" for kept, others in (theirs, mine)]
             other = f"{counts[0]} instead of {counts[1]}" if counts[0] != counts[1] else f"also {counts[1]}, but different ones"
-            raise unlike(numbers[0], f"has other motions than the first design: {other}")
+            raise unlike(numbers[0], f"differs from the first design in its motions: {other}")
 
 
 def _freedom(solution: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:

@@ -143,7 +143,7 @@ class Solver:
     @staticmethod
     def _require(left: float) -> None:
         if not left <= _USABLE:
-            what = f"the relative accuracy of its equations is {left:.1g}: rounding hides the stiffness of large portions"
+            what = f"rounding limits the relative accuracy of its equations to {left:.1g} (expected at most {_USABLE:g})"
             raise refuse("stage", what, "Check for extreme stiffness ratios, or analyse parts of the stage")
 
     def _direct(self, load: Array) -> Array:

@@ -15,7 +15,7 @@ _SEEN = 1e-9
 _TENTH = 0.1
 _METRE = np.array([1.0, 1.0, 1.0, _TENTH, _TENTH, _TENTH])
 """Rotations are compared with translations over 0.1 m."""
-_ALLOWED = "Modes, responses and loops are available; to give this motion a stiffness, add a spring"
+_ALLOWED = "Compute modes, responses or loops instead, or add a spring along this motion"
 _ADVICE = "Add stiffness in that degree of freedom to a link of these bodies, or lock it"
 
 
@@ -46,7 +46,7 @@ def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
     visible = _idle_seen(model)
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
     require(
-        Finding(name, f"this gauge sees a free internal mode (zero stiffness): {_names(model)}", f"{_ADVICE}, or move the gauge")
+        Finding(name, f"this gauge measures a free internal mode (zero stiffness): {_names(model)}", f"{_ADVICE}, or move the gauge")
         for name in outputs
         if number[name] in visible and name.rpartition(".")[2] not in (*COMPONENTS, *FORCES)
     )
@@ -99,7 +99,7 @@ def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[st
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
     watched = {motion for name in outputs for motion in visible.get(number[name], ())}
     require(
-        Finding(name, f"drives a free internal mode (zero stiffness) that an output sees: {_names(model)}", _ADVICE)
+        Finding(name, f"drives a free internal mode (zero stiffness) that affects an output: {_names(model)}", _ADVICE)
         for name in inputs
         if watched & driving.get(name, set())
     )

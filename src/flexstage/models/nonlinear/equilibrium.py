@@ -122,11 +122,11 @@ def failure_reason(status: int, share: float) -> str:
     if status == Status.CONVERGED:
         return ""
     if status == Status.CRITICAL:
-        return (
-            f"at {share:.4g} of the loads the stage snaps or buckles: the equilibrium beyond is not the continuation of the unloaded stage"
-        )
+        return f"at {share:.4g} of the loads the stage snaps or buckles: an equilibrium beyond is not on the path from the unloaded stage"
     if status == Status.NOT_FOLLOWED:
-        return f"the path of equilibria from the unloaded stage ends at {share:.3g} of the loads: states beyond are not on it"
+        return (
+            f"the path of equilibria from the unloaded stage ends at {share:.3g} of the loads, so it contains no state with the full loads"
+        )
     what = "the stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
     progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the load path"
     return f"{what} under the full load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"

@@ -134,8 +134,8 @@ def _require_memory(state: State, *, inner: bool) -> None:
     size = model.freedoms + own + sum(len(each.squares) for each in model.elements)
     needed, most = (f"{each / 1e9:.0f} GB" for each in (8.0 * _MATRICES * cases * size**2, MEMORY))
     if 8.0 * _MATRICES * cases * size**2 > MEMORY:
-        what = f"linearisation about {cases} states has {size:,} coordinates; its dense matrices of {needed} exceed {most}"
-        raise refuse("stage", what, "Use fewer states at once (state.case), or no coordinates of flexures (inner=False)")
+        what = f"linearisation about {cases} states has {size:,} coordinates; its dense matrices need {needed} (expected at most {most})"
+        raise refuse("stage", what, "Use fewer states at once (state.case), or omit coordinates inside flexures (inner=False)")
 
 
 def _joins(model: Nonlinear) -> dict[str, tuple[int, int]]:

@@ -42,6 +42,6 @@ def error_section(analysis: Analysis) -> Section | None:
     picture = Picture(
         to_svg(error_figure(budget), "errors", "Error budget by axis and source"),
         "Sum of the largest errors of all sources"
-        + ("." if budget.forced else ", for a command by the ideal mapping, and for a command that corrects lost motion."),
+        + ("." if budget.forced else ", both with commands by the ideal mapping and with commands that correct lost motion."),
     )
     return section("Error budget", [picture, *error_budget_tables(budget)])

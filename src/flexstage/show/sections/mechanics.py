@@ -118,8 +118,8 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
     if lost is None:
         return None
     text = (
-        "Lost motion is the loss of ideal motion due to elasticity. The budget is exact: by virtual work, the contribution of every link "
-        "is its force times its deformation in the ideal motion. The contributions add up to the loss."
+        "Lost motion is the loss of ideal motion due to elasticity. By virtual work, the contribution of a link is its force "
+        "times its deformation in the ideal motion. The contributions add up exactly to the loss."
     )
     loss = to_svg(loss_figure(lost), "loss", "Lost motion by actuator and part")
     energy = to_svg(energy_figure(lost), "energy", "Strain energy by actuator and part")

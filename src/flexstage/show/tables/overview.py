@@ -74,7 +74,7 @@ def floating_line(model: LinearModel | None) -> str | None:
     axes = [name for name, moved in zip(COMPONENTS, np.any(twist > NOISE * np.max(twist), axis=0), strict=True) if moved]
     driving = [name for name, drives in zip(model.actuators, floats(model, model.actuators), strict=True) if drives]
     modes = "a mode" if len(twist) == 1 else f"{len(twist)} modes"
-    where = f"No stiffness along {', '.join(axes)}, driven by {', '.join(driving)}"
+    where = f"Motion along {', '.join(axes)}, driven by {', '.join(driving)}, has no stiffness"
     return f"{where}: {modes} at 0 Hz. Static stiffness, and strokes under force, are undefined along these axes."
 
 
@@ -154,7 +154,7 @@ def _axis_note(analysis: Analysis) -> str:
         "Strokes: one axis at a time": analysis.workspace is not None and analysis.lost_motion is None,
         "Strokes: elastic motion that can be held continuously": analysis.force_workspace is not None,
         "Stiffness: under a load along that axis, with fixed actuators and the other axes free": analysis.statics is not None,
-        "Resolution: pose error if all gauges are off by one step, with the worst signs": bool(_resolution(analysis)),
+        "Resolution: largest pose error if the reading of every gauge is wrong by one step": bool(_resolution(analysis)),
     }
     return "".join(f"{text}. " for text, there in said.items() if there).rstrip()
 
@@ -208,7 +208,7 @@ def _platform_modes(modes: Modes) -> Table | None:
     if modes.local:
         lowest = number(modes.mode(min(modes.local)).frequency, _DIGITS)
         count = count_text(len(modes.local), "local mode")
-        notes = [f"{count} (platform nearly at rest), {lowest} Hz to 1.5 times the highest."]
+        notes = [f"{count} (platform nearly at rest), from {lowest} Hz to 1.5 times the highest platform mode."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
     return None if table is None else merge_rows(table)
@@ -318,7 +318,7 @@ def _loss_cause(analysis: Analysis, name: str) -> str:
 def _safety_cause(analysis: Analysis, _: str) -> str:
     stress = None if analysis.workspace is None else analysis.workspace.stress
     if stress is None and analysis.kinematics.thrusts:
-        return "all coils at peak current; for the required strokes, use safety.at_strokes"
+        return "with all coils at peak current; safety.at_strokes is for the required strokes"
     return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
 
 

@@ -317,7 +317,7 @@ def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         if isinstance(part, Leaf) and part.ends is LeafEnds.FREE and link.material is not None:
             clamped = leaf_diagonal(replace(part, ends=LeafEnds.CLAMPED), link.material)[3]
             stiffer = float(np.max(np.real(leaf_diagonal(part, link.material)[3] / clamped))) - 1.0
-            what = f"its ends are free to warp in theory, but clamped in the solid model, which is {100.0 * stiffer:.3g} % stiffer in twist"
+            what = f"its ends may warp in theory; the solid model clamps them, and is {100.0 * stiffer:.3g} % stiffer in twist"
             found[link.link.part] = Finding(f"parts.{link.link.part}", what, 'Compare with ends = "clamped"')
     return tuple(found.values())
 

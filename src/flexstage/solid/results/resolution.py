@@ -24,7 +24,7 @@ _AT_ORDER_TWO = 0.25
 """Order one is inaccurate: on hinges and blocks order two had a tenth of its error, never a quarter."""
 _LOCKED = 0.5
 """Change from order one above which it does not estimate order two: elements of order one lock in bending of thin parts."""
-NOT_ESTIMATED = "the error of FEA is unknown: order one, the reference of order two, locks in bending of thin parts. Use --order 3"
+NOT_ESTIMATED = "the error of FEA is unknown: order two is compared with order one, which locks in bending of thin parts. Use --order 3"
 
 
 @dataclass(frozen=True)

@@ -419,7 +419,7 @@ def _why_unestimated(error: float | None, figure: str = "", found: Converged[Any
     if error is not None:
         return None
     is_locked = found is not None and figure in found.unestimated
-    return NOT_ESTIMATED if is_locked else "the error of FEA is unknown: no coarser result has this figure"
+    return NOT_ESTIMATED if is_locked else "the error of FEA is unknown: no coarser result contains this value"
 
 
 def _mapped_model(mechanism: Mechanism) -> LinearModel | None:

@@ -134,7 +134,7 @@ def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Ma
     lines = {line.key: line for line in requirements(stage) if line.key in drawn}
     for key, line in lines.items():
         if not drawn[key] and not all(Verdict(line, np.asarray(each.get(key, 0.0))).passed for each in better):
-            raise refuse(key, "zero with rigid bodies, so no limit of the lumped model ensures it", "Relax the requirement")
+            raise refuse(key, "zero in the lumped model with rigid bodies, so that a stricter limit has no effect", "Relax the requirement")
     ratios = {key: float(np.prod([each[key] / drawn[key] for each in better if key in each])) for key in lines if drawn[key]}
     if all(Verdict(lines[key], np.asarray(drawn[key] * ratio)).passed for key, ratio in ratios.items()):
         return {}

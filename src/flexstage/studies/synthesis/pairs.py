@@ -105,7 +105,7 @@ def _energy_shortfalls(spec: Specification, pair: CandidatePair, frequency: floa
             needed = bounds.required_energy(moved, spec.masses, frequency)
             reason = (
                 f"{', '.join(moved)}: the actuators store {energy:.3g} J, but {needed:.3g} J is needed; "
-                f"at most {100 * factor:.0f} % of the displacement, or {best:.4g} Hz, is possible"
+                f"only {100 * factor:.0f} % of the displacement, or a frequency of {best:.4g} Hz, is possible"
             )
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=energy == whole)
 

@@ -170,7 +170,7 @@ def _reason(motions: frozenset[str]) -> str:
     """Why no parallel guide has the motions."""
     span = pure_force_span(reciprocal_space(twists_of(motions)))
     free = (axis for axis, row in zip(COMPONENTS, span, strict=True) if axis not in motions and np.linalg.norm(row) < 0.5)
-    return f"pure forces that do no work on the motions {_listed(motions)} do not constrain {' or '.join(free)}"
+    return f"pure forces that leave the motions {_listed(motions)} free do not constrain {' or '.join(free)}"
 
 
 def _listed(motions: frozenset[str]) -> str:

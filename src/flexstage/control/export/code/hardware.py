@@ -93,7 +93,7 @@ def _about(given: Machine, program: Program, precision: Precision, about: str, *
         *((about,) if about else ()),
         f"Call the step every {given.step:.12g} s: {program.code.flops} additions and multiplications. {kept}",
         "Compile with -ffp-contract=off, without fast mathematics, without flush to zero: finite inputs then give bit-identical outputs.",
-        "While disabled, the controller holds the last applied strokes. Enabling initialises its states for a bumpless transfer.",
+        "While disabled, the controller holds the last applied strokes. When enabled, it initialises its states for a bumpless transfer.",
         "; ".join(f"{kind} {', '.join(names)}" for kind, names in ports),
     )
 

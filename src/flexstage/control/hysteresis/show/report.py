@@ -12,9 +12,9 @@ from flexstage.show.page import Head, Headline, Picture, Prose, page, section
 from flexstage.show.tables.caveats import warning_table
 
 _METHOD = (
-    "The generalised Prandtl-Ishlinskii model is a monotonic envelope of the voltage, then plays with fixed thresholds and weights of 0 or "
-    "more. It is fitted by least squares, and is the smallest model with at most 1.05 times the smallest cross-validation error. Samples "
-    "that depend on the unknown history are omitted. The inverse is exact: its deviation from the applied voltage is the model error."
+    "The generalised Prandtl-Ishlinskii model applies a monotonic envelope to the voltage, then play operators with fixed thresholds and "
+    "weights of 0 or more. It is fitted by least squares. The smallest model is used whose cross-validation error is at most 1.05 times "
+    "the least. Samples that depend on the unknown history are omitted. The inverse is exact: its voltage error is due to the model error."
 )
 
 

@@ -151,7 +151,7 @@ def _parse_form(line: str) -> tuple[int, int, bool, float, float]:
     if precision not in (REAL_SINGLE, REAL_DOUBLE, COMPLEX_SINGLE, COMPLEX_DOUBLE):
         raise ValueError(f"unknown data type (got {precision}, expected 2, 4, 5 or 6)")
     if spacing and not (1.0 / RATES[1] <= step <= 1.0 / RATES[0] and math.isfinite(first)):
-        raise ValueError(f"invalid even spacing (got {step:g}, from {first:g})")
+        raise ValueError(f"invalid even spacing (got a step of {step:g}, beginning at {first:g})")
     if count < 0:
         raise ValueError(f"invalid number of values (got {count})")
     return precision, count, bool(spacing), first, step

@@ -153,7 +153,7 @@ def require_continuation(start: State, end: State) -> None:
     if continuation.status[0] != Status.CONVERGED:
         raise refuse("stage", failure_reason(int(continuation.status[0]), float(continuation.reached[0])), LESS)
     if continuation.pose is not end.pose:
-        raise refuse("stage", "the equilibrium under its loads is not the continuation of the unloaded stage", LESS)
+        raise refuse("stage", "the equilibrium under its loads is not on the path of equilibria from the unloaded stage", LESS)
 
 
 def proportional_loading(

@@ -56,7 +56,7 @@ def _stage(stages: Mapping[str, StageData]) -> Section | None:
     drawn = {"nominal": stages["before"], "optimum": stages["stage"]}
     pictures = [_still(each, f"stage{place}", f"The stage, {name}.") for place, (name, each) in enumerate(drawn.items())]
     viewer = Viewer("stage", (BlockRow(tuple(pictures)),), first_motion(stages["stage"]), "before")
-    caption = "The optimum. In the viewer, the outline behind it is the nominal design."
+    caption = "The optimum. In the viewer, the outline shows the nominal design."
     return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(caption)])
 
 

@@ -33,7 +33,7 @@ _FRAME, _ENTRY = 100_000, 64
 
 _ABOUT = (
     "Designs of a study, one in each row of variables and responses, in SI units. Attributes: names, units, and of (address or measure). "
-    "Variables with unit 1 may be factors on the design's values. NaN: not computed (mask computed, in pieces of piece rows) or failed "
+    "A variable with unit 1 may multiply values of the design. NaN: not computed (mask computed, one entry for piece rows) or failed "
     "(mask failed, reasons in failures). study: the study's file; facts: inputs of the numbers; made: versions of programs. "
     "In Python: flexstage.studies.sweeps.execution.store.read_results, then to_xarray() or to_pandas()."
 )

@@ -27,7 +27,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     if points := joint_front(found):
         goal, second = (f"{key}, {way}d" for way, key in (found.specification.goal, found.specification.second_goal or ("", "")))
         rows = [(Cell(answer.architecture, Mark.STRONG), answer.actuator, *_front_cells(answer, each)) for answer, each in points]
-        notes = ["No design of any pair is better in both goals. The study of an answer computes its front."]
+        notes = ["No design of any pair is better in both goals. Run the study of an answer to compute its own front."]
         yield make_table("Front of both goals", ["architecture", "actuator", Column(goal), Column(second)], rows, notes=notes)
     if found.failed:
         rows = [
@@ -35,15 +35,15 @@ def answer_tables(found: Answers) -> Iterator[Table]:
             for each in found.failed
         ]
         notes = [
-            "Least violation: relative violation of the worst requirement, at its minimum within all ranges.",
-            "Possible with one relaxed: the best value of this requirement if all others are met, found by search.",
+            "Least violation: relative violation of the most violated requirement; the search minimises it within all ranges.",
+            "Possible with one relaxed: the best value of this requirement that the search finds if all others are met.",
         ]
         heads = ["architecture", "actuator", Column("least violation", "%"), "contradicting requirements", "possible with one relaxed"]
         yield make_table("Failed", heads, rows, notes=notes)
     if found.impossible:
         rows = [(Cell(name, Mark.STRONG), actuators, *_shortfall_cells(best)) for name, actuators, best in _excluded(found.impossible)]
         notes = [
-            'Values "at most" are rigorous upper limits. They hold for any mechanism with these actuators, or for this architecture only.',
+            'Values "at most" are rigorous upper limits. They hold for any mechanism with these actuators, or for one architecture.',
             "A row for several actuators shows the values of the first actuator, which is the closest to the requirement.",
         ]
         columns = ["architecture", "actuators", "requirement", Column("at most"), Column("required"), "holds for", "reason"]
@@ -74,9 +74,9 @@ def _answer_table(found: Answers) -> Table:
     numbers = map(Column, (f"{key}, {way}d", "elastic bodies", *(each.heading for each in more), "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
-        "Efficiency: stroke energy needed for the first frequency of the payload alone, relative to that of the actuators; at most 100 %.",
+        "Efficiency: stroke energy that the payload alone needs for the first frequency, relative to that of the actuators; at most 100 %.",
         "Warnings: number of warnings that flexstage check prints.",
-        "Elastic bodies: the required frequency with flexible bodies, estimated from their outlines.",
+        "Elastic bodies: the frequency with bodies whose flexibility is estimated from their outlines.",
         *(each.note for each in more),
         *(f"{each.pair} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
@@ -104,7 +104,7 @@ class _Extra:
 _MORE = (
     _Extra(
         "finite elements",
-        "Finite elements: the required frequency by finite elements, with which all requirements are met. -: not verified.",
+        "Finite elements: the frequency by finite elements; with it, the stage meets all requirements. -: not verified.",
         lambda answer: _frequency(answer.verified),
     ),
     _Extra(

@@ -19,8 +19,8 @@ from flexstage.studies.tolerances.summary import Crosstalk
 _FAR = 10.0
 _FINE = 1e3
 _COLUMNS = (
-    "alone: the other entries are unchanged. equal shares: all entries change, and each uses the same fraction of the margin. common "
-    "factor: all entries change by the same factor."
+    "alone: only this entry deviates. equal shares: all entries deviate, and each uses the same fraction of the margin. common factor: the "
+    "deviations of all entries have the same factor."
 )
 _NO_YIELD = "No yield, because neither [requirements] of the design nor [limits] of the study define a specification."
 
@@ -109,7 +109,10 @@ def spread_table(found: Toleranced) -> Table:
             cells[-1] = "-"
         rows.append((Cell(name, Mark.STRONG), "" if form.unit == "1" else form.unit, *cells))
     heads = ["nominal", "mean", "deviation", "1 %", "5 %", "median", "95 %", "99 %", "linear"]
-    note = "linear: standard deviation by exact derivatives, sqrt(sum (dy/dx s)^2). -: the response is nonlinear, or not smooth."
+    note = (
+        "linear: standard deviation to first order, sqrt(sum (dy/dx s)^2), with exact derivatives dy/dx and standard deviations s of the "
+        "entries. -: the response is nonlinear, or not smooth."
+    )
     return make_table("Responses", ["response", "unit", *(Column(head) for head in heads)], rows, notes=[note])
 
 
@@ -122,7 +125,7 @@ def share_table(found: Toleranced) -> Table:
         shares = (spread.by_slope if trusted else spread.by_sample)[:, column]
         rows.append((Cell(name, Mark.STRONG), *(share_cell(float(value), "{:.1f}" if trusted else "~{:.1f}") for value in shares)))
     heads: list[Column | str] = ["response", *(Column(each.name, "%") for each in found.study.scatters)]
-    about = "~: variance of samples with the scatter of this entry alone, relative to the sum of these variances."
+    about = "~: variance of samples in which only this entry deviates, relative to the sum of these variances over all entries."
     return make_table(
         "Variance contributions", heads, rows, notes=["Fractions of the variance, by exact derivatives.", *([about] if sampled else [])]
     )
