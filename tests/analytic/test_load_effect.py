@@ -302,7 +302,7 @@ def test_how_far_leaves_shorten_is_told():
     assert found is not None
     ends = fs.equilibrium(fs.nonlinear(stage), hold={"platform.z": 2e-3})
     assert found.shortening == pytest.approx(float(ends.displacement()[0]), rel=0.005)
-    assert "without the foreshortening of" in found.text
+    assert "not including the foreshortening of" in found.text
 
 
 def test_the_error_over_strokes_is_that_of_kinematics_alone():

@@ -114,7 +114,7 @@ def test_the_reason_has_the_numbers(sampled):
         law = PI(0.0, factor * _rate(tried, highest))
         control = replace(tried.controller, laws=(law,)).system(sampled.hardware.step)
         assert (peaks(loop(sampled, control), LoopBreak.POSE).sensitivity.value <= 2.0 * 1.01) is good
-    notch, better = map(float, re.search(r"with a notch at ([\d.]+) Hz, the bandwidth reaches ([\d.]+) Hz", said).groups())
+    notch, better = map(float, re.search(r"[Aa]dd a notch at ([\d.]+) Hz to reach a bandwidth of ([\d.]+) Hz", said).groups())
     assert notch == pytest.approx(sampled.frequencies[1], abs=0.06)
     assert tune(sampled, loops, TuningSpec(PI_FAMILY, 0.97 * better, 2.0, 0.0)).bandwidth == pytest.approx(0.97 * better, rel=0.01)
 

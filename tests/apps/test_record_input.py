@@ -108,7 +108,7 @@ def test_outputs_that_cannot_be_written_are_refused(
         (("identify", "record.uff", "--band", "100 Hz", "106 Hz"), "too few lines from 100 to 106 Hz"),
         (("identify", "record.uff", "--band", "0 Hz", "0.1 Hz"), "the data reach from"),
         ((*UPDATE, "record.uff", "--gain-error", "200 %"), "--gain-error"),
-        (("rig", "stage.toml", "--seconds", "2", "-o", "new.uff", "--resolution", "1 m"), "are below half a step of 1e+06 um"),
+        (("rig", "stage.toml", "--seconds", "2", "-o", "new.uff", "--resolution", "1 m"), "are below half of a step, 1e+06 um"),
     ],
 )
 def test_questions_without_an_answer_are_refused(recorded: Command, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:

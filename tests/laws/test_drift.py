@@ -97,7 +97,7 @@ def test_every_case_of_one_material_scales(name):
 
 def test_a_model_without_links_is_refused():
     stage = case("parallelogram")
-    with pytest.raises(fs.DesignError, match=r"requires stiffness of links only \(got the stiffness of B\)\. Use the lumped model"):
+    with pytest.raises(fs.DesignError, match=r"models with stiffness outside links \(got the stiffness of B\)\. Use the lumped model"):
         drift(stage, fs.mapped(stage), ground="aluminium")
 
 

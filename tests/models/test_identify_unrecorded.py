@@ -122,7 +122,7 @@ def test_short_records_are_searched_where_their_lines_suffice() -> None:
     made = floor_record(PAIR, 20.0, 1)
     low, _ = identification((made,), Search(excitation=Excitation.FLOOR)).found.band
     assert 120.0 < low < 240.0  # 56 lines of 2 Hz in 0.72 of it, to the next of bands of 1.4
-    with pytest.raises(DesignError, match="between 118 and 119 Hz have too few lines in a block, a fortieth of 20 s"):
+    with pytest.raises(DesignError, match="between 118 and 119 Hz have too few lines: a block lasts only a fortieth of 20 s"):
         identification((made,), Search(band=(118.0, 119.0), excitation=Excitation.FLOOR))
 
 

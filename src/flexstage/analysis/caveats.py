@@ -166,7 +166,7 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
     except DesignError:
         return  # the requirement reports the missing field
     if ground is not None and not ground.stated:
-        advice = f'Drift depends on this material: ground = "{ground.material}"'
+        advice = f'Specify this material, on which drift depends: ground = "{ground.material}"'
         yield Default(
             "ground",
             f"material {ground.material} by default: {ground.source}",

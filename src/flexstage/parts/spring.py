@@ -111,5 +111,5 @@ class Spring(Elastic):
         if self.free_length is not None and self.preload is not None:
             yield Finding("free_length", "preload specified too", "Remove one of the two: free_length determines the preload")
         if self.length is None and (self.free_length is not None or self.preload is not None):
-            what = "length missing: with a preload, the stiffness across the axis is preload over length"
+            what = "length missing: with a preload, the stiffness across the axis is preload / length"
             yield Finding("length", what, 'Add the length between the ends, e.g. length = "20 mm"')

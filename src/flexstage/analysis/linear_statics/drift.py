@@ -120,7 +120,7 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     if bent := flexible_links(mechanism) if BODIES in model.stiffness else ():
         strains[BODIES] = np.concatenate([strains[name] for name in bent])
     if other := _unlinked(model, strains):
-        what = f"drift requires stiffness of links only (got the stiffness of {other[0]})"
+        what = f"drift is not supported for models with stiffness outside links (got the stiffness of {other[0]})"
         raise refuse("drift", what, "Use the lumped model")
     whole = {name: _without_modes(strains[name], part.law.shape[-1] - strains[name].shape[-2]) for name, part in model.stiffness.items()}
     motion = model.follow(whole)

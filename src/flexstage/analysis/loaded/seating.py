@@ -103,11 +103,11 @@ def seating_findings(found: Mapping[str, Seating]) -> Iterator[Finding]:
     for name, each in found.items():
         left, slip, pressure, crush = (float(first_design(value, 0)) for value in (each.left, each.slip, each.pressure, each.crush))
         if left <= 0.0:
-            what = f"the ball lifts off its seat: weight, payloads and forces unload {1.0 - left:.3g} times its preload"
+            what = f"the ball lifts off its seat: weight, payloads and forces unload it by {1.0 - left:.3g} times its preload"
             yield Finding(name, what, "Increase the preload, or check that its source is described: a spring, a magnet, weight")
         elif slip > 1.0:
             what = f"the ball slips: weight, payloads and forces give a tangential force of {slip:.3g} times the friction limit"
-            yield Finding(name, what, "Increase the preload; its stiffness is valid without slip")
+            yield Finding(name, what, "Increase the preload: the contact stiffness is valid only without slip")
         if crush > 1.0:
             what = f"the greatest pressure, {pressure / 1e6:.4g} MPa, is {crush:.3g} times the onset of yield in the softer material"
-            yield Finding(name, f"{what} ({_ONSET:g} times its yield stress)", "Use a larger ball, a harder material or less preload")
+            yield Finding(name, f"{what}, {_ONSET:g} times the yield stress", "Use a larger ball, a harder material or less preload")

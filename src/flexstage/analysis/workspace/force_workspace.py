@@ -95,7 +95,7 @@ class ForceWorkspace(Result):
     @property
     def notes(self) -> Annotated[tuple[str, ...], INNER]:
         """Notes on motions that inputs do not drive independently, or not at all."""
-        coupled = () if all(self.alone) else ("Fewer inputs than ideal motions: the other coordinates move freely.",)
+        coupled = () if all(self.alone) else ("There are fewer inputs than ideal motions, so the other coordinates move freely.",)
         return (*coupled, *([f"No actuator moves {', '.join(self.unmoved)}."] if self.unmoved else []))
 
 

@@ -33,7 +33,9 @@ class MapError(Result):
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Error of the linear map", "errors_and_strokes", notes=("Finite minus linear kinematics at {self.points} combinations of strokes.",)
+        "Error of the linear map",
+        "errors_and_strokes",
+        notes=("Finite minus linear kinematics, the worst of {self.points} combinations of strokes.",),
     )
 
     actuators: tuple[str, ...]

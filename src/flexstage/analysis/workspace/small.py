@@ -54,7 +54,7 @@ class SecondOrder:
         """
         cause = ", as redundant constraints stretch flexures" if self.held_twice else ""
         aside = (
-            f", without the foreshortening of {self.shortened} by {show(self.shortening, LENGTH, digits=2)}"
+            f", not including the foreshortening of {self.shortened} by {show(self.shortening, LENGTH, digits=2)}"
             if self.shortening > _ATOM
             else ""
         )

@@ -32,7 +32,7 @@ class ChargedStacks:
     TABLE: ClassVar[Layout] = Layout(
         "Charge drive",
         "stiffer corners residual_hysteresis",
-        notes=("Stiffness ratio of constant charge to constant voltage: 1/(1 - k^2), above the corner frequency.",),
+        notes=("Above the corner frequency, a stack with the coupling factor k is 1/(1 - k^2) times as stiff as at constant voltage.",),
     )
 
     actuators: tuple[str, ...]

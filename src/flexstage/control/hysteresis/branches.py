@@ -148,7 +148,7 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     ahead = float(np.mean((up - down)[1:-1])) / size
     if ahead > _AHEAD:
         what = f"at equal voltage the stroke is {ahead:.1%} of its range larger on rising than on falling branches, so it leads the voltage"
-        yield Finding("record", what, "Check for exchanged channels, or a delayed channel: the stroke of a stack lags")
+        yield Finding("record", what, "Check for exchanged channels, or a delayed channel: the stroke of a stack lags the voltage")
     drops = [float(np.max(np.maximum.accumulate(mean) - mean)) for mean in means]
     worst = int(np.argmax(drops))
     if drops[worst] > _FALL * size:

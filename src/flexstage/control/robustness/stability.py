@@ -192,7 +192,7 @@ def _coordinate(closed: Loop, vector: Array) -> str:
 
 def _sentence(closed: Loop, least: Pole) -> str:
     where = f"{least.frequency:.4g} Hz" if least.frequency > 0.0 else "0 Hz (without oscillation)"
-    comes = f"from {least.source} ({100.0 * least.share:.0f} % participation), with the largest error in {least.coordinate}"
+    comes = f"mainly due to {least.source} ({100.0 * least.share:.0f} % participation); its error is largest in {least.coordinate}"
     if _is_stable(closed, least):
         return f"stable; the slowest pole, at {where}, decays at {-least.growth:.4g} 1/s, {comes}"
     return f"a pole at {where} grows at {least.growth:.4g} 1/s, {comes}"
@@ -204,4 +204,4 @@ def _gain_words(low: float, high: float, *, stable: bool) -> str:
     span = f"{'between' if low else 'below'} {f'{low:.4g} and ' if low else ''}{high:.4g}"
     if not stable:
         return f"the loop is stable with all commands multiplied by a factor {span}"
-    return "no upper gain limit" if np.isinf(high) and not low else f"it stays stable with all commands multiplied by a factor {span}"
+    return "no upper gain limit" if np.isinf(high) and not low else f"it remains stable with all commands multiplied by a factor {span}"

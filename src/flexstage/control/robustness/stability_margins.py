@@ -201,8 +201,8 @@ class Bandwidths(InNotebook):
         "tracking rejection",
         notes=(
             (
-                "Closed-loop bandwidth: the true motion is 3 dB below its reference. Sensitivity crossover: abs(S) = 1; above it, the loop "
-                "amplifies disturbances."
+                "Closed-loop bandwidth: where the true motion is 3 dB below its reference. Sensitivity crossover: where abs(S) = 1; above "
+                "it, the loop amplifies disturbances."
             ),
         ),
     )

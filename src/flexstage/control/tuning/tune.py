@@ -187,7 +187,7 @@ def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
     if not spec.automatic and spec.family != LQG_FAMILY:
         trial, best = highest_bandwidth(seen, replace(spec, automatic=True))
         if trial is not None and best is not None and any(best.notches):
-            found.append(f"with {_notch_places(best)}, the bandwidth reaches {_three_digits(trial.frequency)} Hz")
+            found.append(f"add {_notch_places(best)} to reach a bandwidth of {_three_digits(trial.frequency)} Hz")
     if seen.step is not None:
         acts = wanted if spec.family.notched else max(wanted, float(seen.modes[0]))
         lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)

@@ -87,7 +87,7 @@ def _low_lines(experiment: Identified) -> tuple[Array, Array]:
     chosen = (frequencies > (_SKIPPED + 0.5) * step) & (frequencies <= _SHARE * lowest)
     count = int(np.sum(chosen))
     if count < _FEWEST:
-        what = f"too few lines below {_SHARE * lowest:.3g} Hz ({_SHARE:g} of the lowest mode) for gains (got {count}, expected {_FEWEST})"
+        what = f"too few lines below {_SHARE * lowest:.3g} Hz, {_SHARE:g} times the lowest mode (got {count}, expected {_FEWEST} for gains)"
         raise refuse(experiment.responses.source or "record", what, "Record longer, from lower frequencies, or compare without gains")
     return frequencies[chosen] / lowest, experiment.responses.values[chosen]
 

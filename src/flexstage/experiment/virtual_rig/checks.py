@@ -48,7 +48,9 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     if drive.band is not None and not drive.band[0] < drive.band[1]:
         yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Use 0 <= low < high in Hz")
     if amplifier.bandwidth is not None and amplifier.resistance is not None:
-        yield Finding("amplifier", "both its bandwidth and its resistance are specified", "Specify one of them: the other follows")
+        yield Finding(
+            "amplifier", "both its bandwidth and its resistance are specified", "Specify only one of them: it determines the other"
+        )
     if not 0 <= order <= _HIGHEST_ORDER:
         yield Finding("filter", f"wrong order (got {order})", f"Use an order from 0 (no filter) to {_HIGHEST_ORDER}")
 
@@ -159,11 +161,11 @@ def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     walked = plan.walks * np.sqrt(plan.length / plan.rate / 60.0)
     for name, unit, rms, span in zip(plan.gauges, plan.units, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
         if _PEAK * rms > 0.5 * span:
-            what = f"peaks of 6 x {1e6 * rms:.4g} u{unit} rms exceed half its range of {1e6 * span:.4g} u{unit}"
+            what = f"peaks of 6 x {1e6 * rms:.4g} u{unit} rms exceed half of its range, {1e6 * span:.4g} u{unit}"
             yield Finding(name, what, "Reduce the drive or the drift, or use a gauge of larger range")
     seen = np.hypot(chain.output_rms, walked)
     if np.all(_PEAK * seen < 0.5 * plan.steps):
         best = int(np.argmin(plan.steps / np.maximum(seen, 1e-300)))
         unit, also = plan.units[best], "as at all other gauges"
-        what = f"peaks of 6 x {1e6 * seen[best]:.4g} u{unit} rms are below half a step of {1e6 * plan.steps[best]:.4g} u{unit}, {also}"
+        what = f"peaks of 6 x {1e6 * seen[best]:.4g} u{unit} rms are below half of a step, {1e6 * plan.steps[best]:.4g} u{unit}, {also}"
         yield Finding(plan.gauges[best], what, "Increase the drive, or use gauges of finer resolution: all readings would be constant")

@@ -224,7 +224,7 @@ class Kinematics(Result):
         """Hint for strokes that do not determine the platform."""
         if not self.thrusts:
             return "Add actuators, or lock degrees of freedom of links"
-        return f"Forces ({', '.join(self.thrusts)}) determine no motion: the elastic model computes the displacement"
+        return f"Forces ({', '.join(self.thrusts)}) determine no motion: compute the displacement with the elastic model"
 
     @property
     def blockages(self) -> tuple[Finding, ...]:

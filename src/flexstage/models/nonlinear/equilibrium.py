@@ -129,7 +129,7 @@ def failure_reason(status: int, share: float) -> str:
         )
     what = "the stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
     progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the load path"
-    return f"{what} under the full load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"
+    return f"{what} under the full load; {progress}. The path may end there: use fs.continuation (by arc length) or fs.critical_load"
 
 
 def require_equilibrium(solution: State) -> None:
@@ -255,7 +255,7 @@ def _require_alike(models: Sequence[Nonlinear]) -> None:
         for what, of in _STRUCTURE.items():
             if of(first) != of(other):
                 difference = f"{what} differ from the first design: {_first_difference(of(first), of(other))}"
-                raise refuse(f"design {number}", difference, "Analyse designs of another structure separately")
+                raise refuse(f"design {number}", difference, "Analyse designs with different structures separately")
 
 
 _STRUCTURE: Mapping[str, Callable[[Nonlinear], list[object]]] = {

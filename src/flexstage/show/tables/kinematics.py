@@ -57,7 +57,7 @@ def _command_text(kinematics: Kinematics) -> str:
     """Ideal motions that forces, with the strokes, can command."""
     known = kinematics.commanded
     left = [name for name in kinematics.coordinates if name not in known]
-    reach = f"at any strokes, they act individually along {', '.join(known)}" if known else "they act along no coordinate individually"
+    reach = f"they can command {', '.join(known)} independently" if known else "they can command no coordinate independently"
     rest = f", but not along {', '.join(left)}" if known and left else ""
     forces = count_text(len(kinematics.thrusts), "force actuator")
     return f"{forces}: forces do not determine motions; {reach}{rest}. The elastic model computes the travel."
@@ -131,7 +131,7 @@ def motion_table(kinematics: Kinematics) -> Table | None:
     if kinematics.mobility in (0, 6):
         return None
     units = ratio_units(TWIST_UNITS, tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates))
-    note = f"Rotations are compared with translations by a length of {number(1e3 * kinematics.first_length, 4)} mm."
+    note = f"Rotations are multiplied by {number(1e3 * kinematics.first_length, 4)} mm to compare them with translations."
     return matrix_table(
         "Ideal motions V", Matrix(kinematics.motion, COMPONENTS, kinematics.coordinates, units), units=("mrad",), notes=[note]
     )

@@ -194,7 +194,7 @@ def parasitic_table(lost: LostMotion) -> Table | None:
     weight = np.array([1.0, 1.0, 1.0, *[length] * 3])[:, None]
     if np.max(np.abs(values * weight), initial=0.0) < NOISE * np.max(np.abs(scale * weight), initial=0.0):
         return None
-    note = f"Rotations are compared with translations by a length of {number(1e3 * length, 4)} mm."
+    note = f"Rotations are multiplied by {number(1e3 * length, 4)} mm to compare them with translations."
     return matrix_table("Parasitic motion per stroke", lost.parasitic, against=lost.gain, notes=[note])
 
 

@@ -46,8 +46,8 @@ class SolidUnit(UnitOutput, InNotebook):
         head="unit",
         notes=(
             "Each unit is isolated; its output is a rigid face.",
-            "Axial (K_a) and lateral (K_l) stiffness: actuators fixed, all other motions of the output prevented.",
-            f"Gain and stress: full stroke, with the output guided along its direction, without load. {SHARP_CORNERS}",
+            "Axial (K_a) and lateral (K_l) stiffness: with actuators fixed, and all other motions of the output prevented.",
+            f"Gain and stress: at full stroke without load, with the output guided along its direction. {SHARP_CORNERS}",
         ),
     )
 

@@ -61,8 +61,8 @@ class Peak:
         "frequency outputs width resolution chance reason",
         notes=(
             (
-                "Without a mode, such a peak has this probability. A mode requires a probability of at most 1e-9, and a width above the "
-                "line spacing."
+                "Probability: that of such a peak if there is no mode. A mode requires a probability of at most 1e-9, and a width above "
+                "the line spacing."
             ),
         ),
     )

@@ -23,7 +23,7 @@ _HIGHEST, _LOWEST = 0.42, 6.0
 _FEWEST = 400
 _SAME, _LOCATED = 0.95, 0.1
 _UNSCALED = (
-    "no input was recorded: participations, masses and mass-normalised shapes are unknown. Shapes have largest component 1; "
+    "no input was recorded: participations, masses and mass-normalised shapes are unknown. Shapes have a largest component of 1; "
     "scaling them requires a record with a known force or stroke."
 )
 
@@ -49,7 +49,7 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
         require([Finding(where, what, "Request another band, or record longer")])
     began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=resolution)
     if low == np.inf:
-        what = f"bands between {began:.4g} and {high:.4g} Hz have too few lines in a block, a fortieth of {record.duration:.4g} s"
+        what = f"bands between {began:.4g} and {high:.4g} Hz have too few lines: a block lasts only a fortieth of {record.duration:.4g} s"
         require([Finding(where, what, "Record longer (modes in floor noise need minutes), or request a wider band")])
     divisions, density = band_covariances(record, low, high)
     every = [[shaken_modes(band, search.highest_damping) for band in bands] for bands in divisions]

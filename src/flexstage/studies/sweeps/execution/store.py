@@ -32,9 +32,9 @@ _FRAME, _ENTRY = 100_000, 64
 """Size [B] of a results file without numbers, and of the entry of a failure without its reason."""
 
 _ABOUT = (
-    "Designs of a study, one in each row of variables and responses, in SI units. Attributes: names, units, and of (address or measure). "
-    "A variable with unit 1 may multiply values of the design. NaN: not computed (mask computed, one entry for piece rows) or failed "
-    "(mask failed, reasons in failures). study: the study's file; facts: inputs of the numbers; made: versions of programs. "
+    "Designs of a study, one in each row of variables and responses, in SI units. Attributes: `names`, `units`, `of` (address or measure). "
+    "A variable with unit 1 may multiply values of the design. NaN: not computed (mask `computed`, one entry for each `piece` rows) "
+    "or failed (mask `failed`, reasons in `failures`). study: the study's file; facts: inputs of the numbers; made: versions of programs. "
     "In Python: flexstage.studies.sweeps.execution.store.read_results, then to_xarray() or to_pandas()."
 )
 
