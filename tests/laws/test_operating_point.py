@@ -115,7 +115,7 @@ def test_a_warm_stage_sags_as_it_drifts():
     ("asked", "said"),
     [
         ({"at": {"platform.y": 1e-3}, "loads": {"platform.fy": 1.0}}, "platform.fy specifies it"),
-        ({"at": {"platform.fx": 1.0}, "loads": {"platform.fx": 1.0}}, "both a constant load and a drive"),
+        ({"at": {"platform.fx": 1.0}, "loads": {"platform.fx": 1.0}}, "specified both as a constant load and as a drive"),
         ({"at": {"x": 1.0}}, "x: unknown coordinate. Use e.g. platform.x"),
         ({"at": {"platform.q": 1.0}}, "platform.q: unknown coordinate. Use e.g. platform.y"),
         ({"fixed": ["platform.ry", "body.x"]}, "unknown body or point"),

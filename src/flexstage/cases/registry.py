@@ -40,7 +40,7 @@ _SUMMARIES = {
     "scott-russell": "one axis: a stack amplified by a Scott Russell linkage of notches",
     "scanner": "one fast axis: a stack in a bridge of leaf hinges",
     "pointing-stage": "one rotation: an arm on two cartwheel hinges, pushed by a stack",
-    "spiral-stage": "one axis of millimetres: a shaft in two spiral flexures, pushed by a voice coil",
+    "spiral-stage": "one axis with millimetres of travel: a shaft in two spiral flexures, pushed by a voice coil",
     "steering-mirror": "tip and tilt: a mirror on a wire and a membrane, moved by four voice coils",
     "z-stage": "one vertical axis: four leaves, a payload, a spring that carries its weight, a voice coil",
 }

@@ -145,7 +145,7 @@ def _loss_findings(damping: Array, motion: Array) -> Iterator[Finding]:
 
 def _shape_findings(part: Superelement, matrices: Mapping[str, MatrixLike]) -> Iterator[Finding]:
     if len(part.ports) < 2:
-        yield Finding("ports", f"too few ports (got {len(part.ports)}, expected 2 or more)", "Specify all interface frames")
+        yield Finding("ports", f"too few ports (got {len(part.ports)}, expected 2 or more)", "Specify every interface frame as a port")
     moved = [name for name, port in part.ports.items() if any(np.ndim(each) for each in (*port.at, *port.along, *port.up))]
     if moved and any(np.ptp(np.real(each)) for name in moved for port in (part.ports[name],) for each in (*port.at, *port.along, *port.up)):
         yield Finding(f"ports.{moved[0]}", "its pose varies between designs, but the file is for one pose", "Keep the ports fixed")

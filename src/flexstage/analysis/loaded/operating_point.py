@@ -174,7 +174,7 @@ def coordinate(state: State, name: str) -> Array:
 def _contradictions(requested: Conditions) -> Iterator[Finding]:
     for name in requested.driven:
         if name in requested.loads:
-            yield Finding(name, "both a constant load and a drive", "Remove one of the two")
+            yield Finding(name, "specified both as a constant load and as a drive", "Remove one of the two")
     for name in requested.coordinates:
         owner, _, component = name.rpartition(".")
         load = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else ""

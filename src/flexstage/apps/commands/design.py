@@ -69,7 +69,7 @@ def design(
     if output is not None and found.answers:
         _write(found, output)
     if found.interrupted:
-        raise KeyboardInterrupt(*["The answers so far were written."] if output is not None and found.answers else [])
+        raise KeyboardInterrupt(*["The designs found so far were written."] if output is not None and found.answers else [])
     tables, page = lambda: answer_tables(found), partial(answer_report, found)
     return CommandResult(None, lambda: found, tables, page, Model.LUMPED, failed=found.best is None)
 

@@ -259,7 +259,9 @@ def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator
                 name, f"{key} does not apply to an input in {part.input.noun}", f"Omit {key}, or describe the actuator as a voice coil"
             )
     if setting.bits is not None and np.isinf(_largest_input(setting, part)):
-        yield Finding(name, "bits need a limited input range", 'Add for example peak_current = "5 A" to the actuator\'s part')
+        yield Finding(
+            name, "a resolution in bits requires a limited input range", 'Add for example peak_current = "5 A" to the actuator\'s part'
+        )
 
 
 def _slew(setting: AmplifierSettings, gain: float, capacitance: float) -> float:

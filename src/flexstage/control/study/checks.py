@@ -153,7 +153,7 @@ def _damping(found: DampingSetup) -> Iterator[Finding]:
         yield Finding(
             "damping.noise",
             "noise applies to force sensors, but strain gauges measure the tension of the legs",
-            "Remove noise: the design contains the noise of the strain gauges",
+            "Remove this key: the design contains the noise of the strain gauges",
         )
 
 
@@ -203,7 +203,7 @@ def _hysteresis(found: HystereticStacks) -> Iterator[Finding]:
 def _compensation(setup: LoopSetup) -> Iterator[Finding]:
     if Compensation.HYSTERESIS in setup.compensate and setup.amplifier.settings.charge is not None:
         what = "the inverse applies to voltage drive, but the stacks have charge drive"
-        yield Finding("compensate", what, 'Remove "hysteresis" from compensate: the residual hysteresis under charge drive differs')
+        yield Finding("compensate", what, 'Remove "hysteresis" from compensate: with charge drive, the hysteresis is different')
     if Compensation.HYSTERESIS in setup.compensate and setup.hysteresis is None:
         yield Finding("compensate", "the inverse needs a hysteresis of the stacks", "Add [hysteresis] with a file or a width")
     for each in dict.fromkeys(setup.compensate):

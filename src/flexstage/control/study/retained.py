@@ -66,7 +66,7 @@ def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, 
     texts = (f"the peak of S is {peak:.4g} and the lowest phase margin {phase:.4g} deg" for peak, phase in (own, rest))
     few, many = (len(each.plant.frequencies) for each in (closed, more))
     what = f"too few modes: with {few} modes, {next(texts)}; with {many} of the model's {found.total} modes, {next(texts)}"
-    return [Finding("modes", what, "Remove modes: the significant modes are then retained")]
+    return [Finding("modes", what, "Remove this key: the significant modes are then retained")]
 
 
 def _worst(closed: Loop) -> tuple[float, float]:

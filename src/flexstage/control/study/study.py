@@ -277,7 +277,7 @@ def _whole_growth(given: ResolvedSetup, control: Control) -> float:
     whole = loop(given.whole, control.system)
     if whole.system.growth >= 0.0:
         what = verdict(whole).sentence
-        raise refuse("modes", f"with all modes {what}", "Increase modes, or reduce the bandwidth")
+        raise refuse("modes", f"with all modes {what}", "Retain more modes, or reduce the bandwidth")
     return float(whole.system.growth)
 
 
@@ -300,7 +300,7 @@ def _warnings(given: ResolvedSetup) -> list[Finding]:
         yielding = given.damping
         worst = int(np.argmin(yielding.softest))
         what = f"the platform's dynamic stiffness falls to {100.0 * yielding.softest[worst]:.3g} % of the static stiffness"
-        advice = "The pose loop must supply the missing stiffness. Increase corner or reduce ratio for more stiffness"
+        advice = "The pose loop must supply the missing stiffness. For more stiffness, increase damping.corner or reduce damping.ratio"
         found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
         asked = None if given.setup.damping is None else given.setup.damping.ratio
         if asked is not None and yielding.reached < _ENOUGH * asked:

@@ -404,7 +404,7 @@ def _port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterato
         yield Finding(f"{where}.part", what, "Use the part directly")
     if ports and link.free and len(ports) > 2:
         what = f'free requires two ports (part "{link.part}" has {len(ports)})'
-        yield Finding(f"{where}.free", what, "Remove free: the part is rigid in the ideal model")
+        yield Finding(f"{where}.free", what, "Remove this key: the part is rigid in the ideal model")
 
 
 def _unknown_bodies(

@@ -191,7 +191,7 @@ def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
         if not re.fullmatch(r"\w[\w-]*", name):
             yield Finding(f"{where}.circuit", f'invalid name "{link.circuit}"', 'Use e.g. "pair" or "-pair"')
         if not isinstance(inner(part), ThrustActuator):
-            yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Remove circuit, or use a force actuator")
+            yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Remove this key, or use a force actuator")
         elif parts.setdefault(name, link.part) != link.part:
             what = f'different parts in one circuit (got "{link.part}", and "{parts[name]}" in another link)'
             yield Finding(f"{where}.circuit", what, "Use one part for all links of a circuit")

@@ -80,7 +80,7 @@ def follow_to_event(
             break
     if abs(last.stiffness) < VANISHED:  # Newton's method has no solution at a zero own stiffness of a flexure
         return FollowedPath(last, last, _bend(bent, last), last.factor)
-    raise _not_followed(last, "no equilibrium next to the last equilibrium", None if reserve is None else bent)
+    raise _not_followed(last, "no equilibrium was found near the last one", None if reserve is None else bent)
 
 
 def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: Point | None, tolerance: float) -> FollowedPath | None:

@@ -165,7 +165,7 @@ def hinge_compliance(
             break
     if last is None:
         what = f"its coarsest mesh has more than the {required.freedoms} DOFs allowed"
-        raise refuse(_label(part), what, "Use --order 3, which starts at order two, or in Python increase freedoms of the Accuracy")
+        raise refuse(_label(part), what, "Use --order 3, which starts at order two, or allow more freedoms in the Accuracy (Python)")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
         compliance=alone,

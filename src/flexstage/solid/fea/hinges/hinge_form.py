@@ -12,7 +12,7 @@ from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.hinges.roots import Roots
 
 NO_ESTIMATE = "an estimate needs two solutions, and the second would exceed the allowed number of unknowns"
-LEAVE = "Compare it with beam theory (flexstage verify), or in Python increase freedoms of the Accuracy of hinge_compliance"
+LEAVE = "Compare it with beam theory (flexstage verify), or allow hinge_compliance more freedoms in its Accuracy (Python)"
 
 
 class HingeForm(NamedTuple):

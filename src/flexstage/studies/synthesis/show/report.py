@@ -16,7 +16,7 @@ from flexstage.studies.synthesis.answers import Answers, joint_front
 from flexstage.studies.synthesis.search import Answer, FrontPoint
 from flexstage.studies.synthesis.show.tables import answer_tables
 
-_BOUND = "Frequency and width of the answers. Dashed lines: bound of the frequency for any mechanism with these actuators and this payload."
+_BOUND = "Frequency and width of the designs found. Dashed lines: bound of the frequency for any mechanism with these actuators and this payload."
 
 
 def answer_report(found: Answers) -> str:
@@ -30,7 +30,7 @@ def answer_report(found: Answers) -> str:
     points = joint_front(found)
     excluded = tables[2:] if points else tables[1:]
     bounded = [(each, each.efficiency) for each in found.answers if each.efficiency]
-    caption = "frequency and width of the answers"
+    caption = "frequency and width of the designs found"
     picture = Picture(to_svg(bound_figure(bounded), "bound", caption), _BOUND) if bounded else None
     fronts: list[Any] = []
     if points:

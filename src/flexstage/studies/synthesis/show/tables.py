@@ -27,7 +27,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     if points := joint_front(found):
         goal, second = (f"{key}, {way}d" for way, key in (found.specification.goal, found.specification.second_goal or ("", "")))
         rows = [(Cell(answer.architecture, Mark.STRONG), answer.actuator, *_front_cells(answer, each)) for answer, each in points]
-        notes = ["No design of any pair is better in both goals. Run the study of an answer to compute its own front."]
+        notes = ["No design of any pair is better in both goals. Run the study of a design to compute its own front."]
         yield make_table("Front of both goals", ["architecture", "actuator", Column(goal), Column(second)], rows, notes=notes)
     if found.failed:
         rows = [
