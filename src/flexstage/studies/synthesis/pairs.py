@@ -131,7 +131,7 @@ def _stroke_shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Sho
         flat = max(moved["x"], moved["y"])
         least = 1.0 / math.hypot(0.5 / moved["z"], 0.5 / (flat * math.cos(math.pi / 6.0)))
         if stroke < least:
-            reason = f"the stroke of the struts is {1e6 * stroke:.4g} um, but x and z need {1e6 * least:.4g} um, whatever the slope of the struts"
+            reason = f"the strut stroke is {1e6 * stroke:.4g} um, but x and z need {1e6 * least:.4g} um with struts of any slope"
             yield Shortfall("motion.z", moved["z"] * stroke / least, moved["z"], "m", reason)
 
 

@@ -16,7 +16,7 @@ from flexstage.studies.synthesis.answers import Answers, joint_front
 from flexstage.studies.synthesis.search import Answer, FrontPoint
 from flexstage.studies.synthesis.show.tables import answer_tables
 
-_BOUND = "Frequency and width of the designs found. Dashed lines: bound of the frequency for any mechanism with these actuators and this payload."
+_BOUND = "Frequency and width of the designs. Dashed lines: bound of the frequency for any mechanism with these actuators and this payload."
 
 
 def answer_report(found: Answers) -> str:
