@@ -222,7 +222,9 @@ def _exchange_doubts(names: tuple[str, ...], likeness: Array, among: Array) -> I
     sure = [index for index in moved if abs(likeness[index, order[index]]) > _ALIKE and abs(among[index, order[index]]) < _ALIKE]
     if sure and len(sure) == len(moved):
         listed, best = " and ".join(names[index] for index in sure), min(abs(likeness[index, order[index]]) for index in sure)
-        right = "after exchanging them" if len(sure) == 2 else ", ".join(f"{names[order[index]]} as {names[index]}" for index in sure)
+        right = (
+            "after exchanging them" if len(sure) == 2 else f"with {', '.join(f'{names[order[index]]} as {names[index]}' for index in sure)}"
+        )
         yield (
             f"{listed} look exchanged: {right}, the correlation of their modal gains with theory is {best:.2f} "
             f"({float(np.mean(own[sure])):.2f} as recorded)"

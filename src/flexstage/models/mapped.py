@@ -282,7 +282,7 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
     30.28
     """
     if np.any(np.real(actuator_of(assembly.links[drive].part).free_deformation)[..., 1:]):
-        raise refuse(drive, "its stroke is not along its axis, which the series springs of this model require", "")
+        raise refuse(drive, "its stroke is not along its axis, as the series springs of this model require", "")
     ways = _links_at_bodies(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     if levers:

@@ -335,7 +335,7 @@ def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Ar
         stated = np.real(first_design(stack(part.centre), 1))
         off = float(np.linalg.norm(stated - centre))
         if off > STATED * span:
-            what = f"wrong centre of mass ({off * 1e3:.4g} mm from the centre ({_millimetres(centre)}) mm of the matrices)"
+            what = f"wrong centre of mass ({off * 1e3:.4g} mm from the centre of the matrices, ({_millimetres(centre)}) mm)"
             yield Finding("centre", what, advice)
     if part.inertia is not None:
         stated = np.real(first_design(tensor(part.inertia), 2))

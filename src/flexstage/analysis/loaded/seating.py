@@ -104,7 +104,7 @@ def seating_findings(found: Mapping[str, Seating]) -> Iterator[Finding]:
         left, slip, pressure, crush = (float(first_design(value, 0)) for value in (each.left, each.slip, each.pressure, each.crush))
         if left <= 0.0:
             what = f"the ball lifts off its seat: weight, payloads and forces unload it by {1.0 - left:.3g} times its preload"
-            yield Finding(name, what, "Increase the preload, or check that its source is described: a spring, a magnet, weight")
+            yield Finding(name, what, "Increase the preload, or describe the source of the preload: a spring, a magnet or weight")
         elif slip > 1.0:
             what = f"the ball slips: weight, payloads and forces give a tangential force of {slip:.3g} times the friction limit"
             yield Finding(name, what, "Increase the preload: the contact stiffness is valid only without slip")

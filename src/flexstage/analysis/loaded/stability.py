@@ -174,7 +174,7 @@ def _require_neutral(square: Array) -> None:
     """Refuse a dead load that gives motions without stiffness a stiffness of its own, here over mass (k, k) [1/s^2]."""
     if np.max(np.abs(square)) > _NEUTRAL:
         frequency = float(np.sqrt(np.max(np.abs(square)))) / (2.0 * np.pi)
-        what = f"weight acts as a spring on a motion without stiffness (frequency {frequency:.3g} Hz), which this model neglects"
+        what = f"this model neglects that weight acts as a spring on a motion without stiffness (frequency {frequency:.3g} Hz)"
         raise refuse("stage", what, "Place the centre of mass on the axis of the bearing, or set gravity along this axis")
 
 

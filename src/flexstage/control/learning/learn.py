@@ -105,7 +105,7 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
     asked = scaled_norms(back, scale)
     beyond = np.flatnonzero((worst > _CONTRACTS) | (asked > _MOST_INVERTED))
     if len(beyond) and beyond[0] == 0:
-        what = f"for mode shifts up to {100.0 * spread:g} %, a pass multiplies the error at {lines[0]:.3g} Hz by {worst[0]:.3g}"
+        what = f"for mode shifts up to {100.0 * spread:g} %, one pass may multiply the error at {lines[0]:.3g} Hz by {worst[0]:.3g}"
         raise refuse("follow", f"{what} (expected {_CONTRACTS:g} or less)", "Use a smaller gain or spread")
     end = float(lines[beyond[0] - 1]) if len(beyond) else 0.45 / step
     band = Band(end)

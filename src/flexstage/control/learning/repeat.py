@@ -135,7 +135,7 @@ class RepetitiveResult:
                 "{self.rms.shape[0]} periods of {self.period:.4g} s, with gain {self.gain:g} in the band up to {self.band:.4g} Hz. Each "
                 "period multiplies the repeating error by at most {self.contraction:.3g}, for mode shifts up to {self.spread:g}."
             ),
-            "Errors between the harmonics of {self.period:.4g} s are amplified by at most {self.amplifies:.3g}.",
+            "Errors at frequencies between the harmonics of {self.period:.4g} s are amplified by at most {self.amplifies:.3g}.",
             IN_BAND,
         ),
     )
