@@ -404,7 +404,7 @@ def test_magnitude_and_phase_are_the_responses(unit: str, tmp_path: Path) -> Non
     assert found.units == (("um/V",),)
     head = f"Frequency (Hz),A Magnitude (dB),B Magnitude (dB),B Phase ({unit})"
     np.savetxt(path, np.column_stack([lines, 0.0 * lines, 20.0 * np.log10(abs(exact)), phase]), header=head, delimiter=",", comments="")
-    assert "or select the complete ones (channels): B" in refusal(path)
+    assert "or select the complete ones (option channels): B" in refusal(path)
     second = read(path, Options(only=("B",)))
     assert isinstance(second, Responses)
     np.testing.assert_allclose(second.values[:, 0, 0], exact, rtol=1e-12)

@@ -274,7 +274,9 @@ def test_a_file_with_both_asks_which_is_meant(tmp_path: Path) -> None:
 def test_arrays_of_unknown_meaning_are_listed_with_the_option_that_names_them(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     scipy.io.savemat(path, {"dt": 1 / RATE, "u": U, "H": H, "note": "run 2"})
-    told = r"no array \"samples\" or \"responses\".*dt = 0.000488281, u \(500, 2\), H \(64, 3, 2\) complex.*Assign the arrays \(array\)"
+    told = (
+        r"no array \"samples\" or \"responses\".*dt = 0.000488281, u \(500, 2\), H \(64, 3, 2\) complex.*Assign the arrays \(option array\)"
+    )
     with pytest.raises(DesignError, match=told):
         read(path)
     with pytest.raises(DesignError, match=r"no times and no rate.*dt = 0.000488281.*\"step=...\""):

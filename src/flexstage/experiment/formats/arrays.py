@@ -212,8 +212,8 @@ def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
         return DesignError([_object_finding(contents, name) for name in contents.objects])
     missing = {None: '"samples" or "responses"', Kind.RECORD: '"samples"', Kind.RESPONSES: '"responses"'}[kind]
     advice = (
-        'Assign the arrays (array): for a record "samples=..." with "time=...", "rate=..." or "step=...", or specify the rate (rate); '
-        'for responses "responses=..." with "frequencies=..."'
+        'Assign the arrays (option array): for a record "samples=..." with "time=...", "rate=..." or "step=...", or specify the rate (option '
+        'rate); for responses "responses=..." with "frequencies=..."'
     )
     return refuse(contents.where, f"it has no array {missing}. {list_arrays(contents)}", advice)
 
@@ -259,13 +259,13 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
     step = contents.number(*options.arrays.step)
     stated = options.rate or contents.number(*options.arrays.rate) or (1.0 / step if step else None)
     if time is None and stated is None:
-        advice = 'Assign the time: "time=...", "rate=..." or "step=..." (array), or specify the rate (rate)'
+        advice = 'Assign the time: "time=...", "rate=..." or "step=..." (option array), or specify the rate (option rate)'
         raise refuse(contents.where, f"no times and no rate. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
     where, unit = f"{contents.where}: {time.name}", plain_unit(" ".join(_texts(time.attributes.get("units", "s"))) or "s")
     if unit not in TIME_SCALES:
-        raise refuse(where, f'wrong unit (got "{unit}", expected a time)', "Use s, ms or us, or specify the rate (rate)")
+        raise refuse(where, f'wrong unit (got "{unit}", expected a time)', "Use s, ms or us, or specify the rate (option rate)")
     return determine_clock(time.samples(int(np.argmax(time.shape))), options, where, scale=TIME_SCALES[unit], stated=stated)
 
 
@@ -275,7 +275,7 @@ def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | Non
     length = max(time.shape) if time is not None else max(chosen[0].shape) if named else chosen[0].shape[0]
     if not all(length in each.shape for each in chosen):
         sizes = ", ".join(f"{each.name} {each.shape}" for each in (*([time] if time is not None else []), *chosen[:_LISTED]))
-        raise refuse(contents.where, f"its arrays differ in length: {sizes}", 'Assign arrays of equal length (array "samples=...")')
+        raise refuse(contents.where, f"its arrays differ in length: {sizes}", 'Assign arrays of equal length (option array "samples=...")')
     return [(each, each.shape.index(length)) for each in chosen]
 
 
@@ -299,7 +299,7 @@ def _texts_by_channel(
     found = contents.texts(*names) or tuple(text for each, width in zip(own, widths, strict=True) for text in (each or ("",) * width))
     if len(found) != sum(widths):
         what = f"wrong number of {kind} (got {len(found)}: {', '.join(found[:6])}; expected {sum(widths)}, one per channel)"
-        raise refuse(contents.where, what, f'Name the correct list (array "{kind}=...")')
+        raise refuse(contents.where, what, f'Name the correct list (option array "{kind}=...")')
     return found
 
 
@@ -319,7 +319,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     """Responses; each of several arrays contains outputs for the same inputs."""
     lines = contents.vector(options.arrays.frequencies)
     if lines is None:
-        raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign the frequencies (array "frequencies=...")')
+        raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign the frequencies (option array "frequencies=...")')
     frequencies = lines.whole().ravel().astype(float)
     problem = rising_problem(frequencies)
     if problem is not None:
@@ -329,7 +329,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     cubes = [_cube(each, size) for each in chosen]
     if len({cube.shape[2] for cube in cubes}) > 1:
         shapes = ", ".join(f"{each.name} {each.shape}" for each in chosen)
-        raise refuse(contents.where, f"different numbers of inputs: {shapes}", "Name the correct responses (array)")
+        raise refuse(contents.where, f"different numbers of inputs: {shapes}", "Name the correct responses (option array)")
     values = np.concatenate(cubes, axis=1)
     averages = contents.number("averages")
     several = len(chosen) == values.shape[1]
@@ -393,7 +393,7 @@ def _coherence(contents: Contents, shape: tuple[int, ...], arrays: Arrays) -> Ar
     raise refuse(
         contents.where,
         f"wrong shape of the coherence (got {sizes}, expected {shape}, the shape of the responses)",
-        'Assign the coherence (array "coherence=...")',
+        'Assign the coherence (option array "coherence=...")',
     )
 
 

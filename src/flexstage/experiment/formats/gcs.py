@@ -99,7 +99,7 @@ def _rate(path: Path, said: Mapping[str, str]) -> float:
     if 0.0 < step < float("inf"):
         return 1.0 / step
     found = f'got "{text}"' if text else "missing"
-    raise refuse(f"{path}: SAMPLE_TIME", f"no time between lines in the header ({found})", "Specify the rate (rate)")
+    raise refuse(f"{path}: SAMPLE_TIME", f"no time between lines in the header ({found})", "Specify the rate (option rate)")
 
 
 def _role(name: str) -> Role:

@@ -50,12 +50,12 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
     wanted = [each for each in found if options.kind in (None, Kind(each.kind))]
     if not wanted:
         held = " and ".join(each.kind for each in found) or "neither a record nor responses"
-        raise refuse(str(place), f"it contains {held}, not the requested kind", "Select the other kind of data (kind)")
+        raise refuse(str(place), f"it contains {held}, not the requested kind", "Select the other kind of data (option kind)")
     if len(wanted) > 1:
         listed = " and ".join(_describe(each) for each in wanted)
-        raise refuse(str(place), f"it contains {listed}", 'Select one (kind): "record" or "responses"')
+        raise refuse(str(place), f"it contains {listed}", 'Select one (option kind): "record" or "responses"')
     if isinstance(wanted[0], Record) and not wanted[0].length:
-        raise refuse(str(place), "one of its channels has no samples", "Export the file again, or omit that channel (channels)")
+        raise refuse(str(place), "one of its channels has no samples", "Export the file again, or omit that channel (option channels)")
     return wanted[0]
 
 

@@ -108,7 +108,9 @@ def determine_clock(samples: Samples, options: Options, where: str, *, scale: fl
         raise DesignError([_gaps(clock, where)])
     if stated is not None and abs(stated / clock.rate - 1.0) > 1e-3:
         raise refuse(
-            where, f"contradictory rates: {clock.rate:g} Hz in its times, {stated:g} Hz in the file", "Specify the correct rate (rate)"
+            where,
+            f"contradictory rates: {clock.rate:g} Hz in its times, {stated:g} Hz in the file",
+            "Specify the correct rate (option rate)",
         )
     return replace(clock, rate=stated or clock.rate)
 

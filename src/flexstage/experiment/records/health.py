@@ -260,7 +260,7 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers) -> str | None:
 def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
     for channel in channels:
         if (problem := unit_problem(channel.unit)) is not None:
-            advice = 'Specify it (units), e.g. "S*=um", or accept "units" to use the numbers unchanged'
+            advice = 'Specify it (option units), e.g. "S*=um", or accept "units" to use the numbers unchanged'
             yield _fault(FaultTolerance.UNITS, where, channel.name, problem, advice)
 
 
@@ -288,16 +288,16 @@ def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
 def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
-            advice = 'Specify it (inputs, outputs), or accept "names" to omit the channel'
+            advice = 'Specify it (options inputs, outputs), or accept "names" to omit the channel'
             yield _fault(FaultTolerance.NAMES, where, channel.name, "its role is unknown", advice)
     if requirements.unrecorded and record.inputs:
         what = f"inputs in a record of unrecorded excitation: {', '.join(each.name for each in record.inputs)}"
-        yield _fault(None, where, "", what, "Select only outputs (channels), or omit the excitation")
+        yield _fault(None, where, "", what, "Select only outputs (option channels), or omit the excitation")
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
         if not channels and not (requirements.unrecorded and kind == "input"):
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
-            other = ", or specify the excitation (excitation)" if kind == "input" else ""
-            yield _fault(None, where, "", what, f"Specify the {kind}s ({kind}s) by names or patterns{other}")
+            other = ", or specify the excitation (option excitation)" if kind == "input" else ""
+            yield _fault(None, where, "", what, f"Specify the {kind}s (option {kind}s) by names or patterns{other}")
     yield from _name_faults(record.inputs, record.outputs, requirements, where)
 
 

@@ -63,7 +63,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
         return read_arrays(_responses(path, layout, samples, options, lines), replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
     if time is None and not options.rate and "rate" not in said:
         what = f"no time column in: {', '.join(layout.names[:12])}"
-        raise refuse(str(path), what, 'Assign the times (array "time=..."), or specify the rate (rate)')
+        raise refuse(str(path), what, 'Assign the times (option array "time=..."), or specify the rate (option rate)')
     return read_record(samples, said, options, time)
 
 
@@ -108,7 +108,7 @@ def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Findi
             yield Finding(
                 f"{path}: {meaning}={name}",
                 "in a table, only time and frequencies can be assigned",
-                "Select other columns as channels (channels)",
+                "Select other columns as channels (option channels)",
             )
         elif not any(matches(each, [name]) for each in layout.names):
             yield Finding(f"{path}: {meaning}={name}", "unknown column", suggest_nearest(name, layout.names))
@@ -212,7 +212,7 @@ def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ..
         'Write real and imaginary part of each response, "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence", or '
         'magnitude and phase, "frequency [Hz], S1 magnitude [um/V], S1 phase [deg]"'
     )
-    named = f"; or select the complete ones (channels): {', '.join(whole[:12])}" if all(whole) and whole else ""
+    named = f"; or select the complete ones (option channels): {', '.join(whole[:12])}" if all(whole) and whole else ""
     raise refuse(str(path), f"its columns do not form complete responses (columns: {', '.join(names[:12])})", advice + named)
 
 

@@ -132,7 +132,7 @@ def _common_clock(path: Path, chosen: list[tuple[str, DataSet]], options: Option
 def _lengths(path: Path, chosen: list[tuple[str, DataSet]]) -> Iterable[Finding]:
     lengths = Counter(each.values.length for _, each in chosen)
     usual = max(lengths, key=lambda length: (lengths[length], length))
-    advice = "Export all channels over the same time, or select matching ones (channels)"
+    advice = "Export all channels over the same time, or select matching ones (option channels)"
     for name, each in chosen:
         if each.values.length != usual:
             yield Finding(f"{path}: {name}", f"it has {each.values.length} samples, others have {usual}", advice)
@@ -143,7 +143,7 @@ def _clock_findings(path: Path, clocks: dict[str, Clock]) -> Iterable[Finding]:
     for name, clock in clocks.items():
         if abs(clock.rate / first.rate - 1.0) > 1e-6 or abs(clock.start - first.start) * first.rate > 0.01:
             what = f"it is sampled at {clock.rate:g} Hz from {clock.start:g} s, {known} at {first.rate:g} Hz from {first.start:g} s"
-            yield Finding(f"{path}: {name}", what, "Select channels with the same sampling (channels)")
+            yield Finding(f"{path}: {name}", what, "Select channels with the same sampling (option channels)")
 
 
 def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
@@ -212,7 +212,7 @@ def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Option
     outputs, inputs = (tuple(dict.fromkeys(pair[side] for pair in table)) for side in (0, 1))
     missing = {output: [input_ for input_ in inputs if (output, input_) not in table] for output in outputs}
     if FaultTolerance.INCOMPLETE not in options.accept_faults:
-        advice = 'Measure them, select complete channels (inputs, outputs), or accept "incomplete" to omit this output'
+        advice = 'Measure them, select complete channels (options inputs, outputs), or accept "incomplete" to omit this output'
         require(
             Finding(f"{path}: {output}", f"its responses to {', '.join(lack)} are missing", advice)
             for output, lack in missing.items()
@@ -220,7 +220,7 @@ def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Option
         )
     complete = tuple(output for output, lack in missing.items() if not lack)
     if not complete:
-        raise DesignError([Finding(str(path), "no output has responses to all inputs", "Select the inputs (inputs)")])
+        raise DesignError([Finding(str(path), "no output has responses to all inputs", "Select the inputs (option inputs)")])
     return complete, inputs
 
 
@@ -263,7 +263,7 @@ def _frequencies(path: Path, found: list[DataSet]) -> Array:
         for each, axis in zip(found, axes, strict=True)
         if len(axis) != len(axes[0]) or not np.allclose(axis, axes[0], rtol=1e-6, atol=0.0)
     ]
-    advice = "Export all responses over the same frequencies, or select matching ones (inputs, outputs)"
+    advice = "Export all responses over the same frequencies, or select matching ones (options inputs, outputs)"
     require(Finding(_where(path, each), f"its frequencies differ from those of {_name(found[0])}", advice) for each in differ)
     return axes[0]
 
