@@ -212,8 +212,8 @@ def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
         return DesignError([_object_finding(contents, name) for name in contents.objects])
     missing = {None: '"samples" or "responses"', Kind.RECORD: '"samples"', Kind.RESPONSES: '"responses"'}[kind]
     advice = (
-        'Assign the arrays (option array): for a record "samples=..." with "time=...", "rate=..." or "step=...", or specify the rate (option '
-        'rate); for responses "responses=..." with "frequencies=..."'
+        'Assign the arrays (option array): for a record "samples=..." with "time=...", "rate=..." or "step=...", or specify the rate '
+        '(option rate); for responses "responses=..." with "frequencies=..."'
     )
     return refuse(contents.where, f"it has no array {missing}. {list_arrays(contents)}", advice)
 
