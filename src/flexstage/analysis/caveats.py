@@ -105,11 +105,11 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
 def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
     for name, piezo in _shared_stacks(mechanism).items():
         if np.all(np.asarray(piezo.mass) == 0.0):
-            advice = 'The mass adds local modes and lowers frequencies: mass = "0.12 kg"'
+            advice = 'Specify the mass, which lowers frequencies: mass = "0.12 kg"'
             yield Default(f"parts.{name}", "stack mass 0 by default", advice, _STILL)
         if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
-            what, advice = f"bias {middle:g} V (mid-range) by default", f'Strokes are relative to the bias: bias = "{middle:g} V"'
+            what, advice = f"bias {middle:g} V (mid-range) by default", f'Specify the bias, to which strokes are relative: bias = "{middle:g} V"'
             yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
 
 

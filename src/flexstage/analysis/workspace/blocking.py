@@ -49,7 +49,7 @@ class PlatformLine(Result):
     TABLE: ClassVar[Layout] = Layout(
         "Forces of the platform",
         "table",
-        notes=("The displacement along a coordinate ends at the first actuator's limit; the load acts only along this coordinate.",),
+        notes=("The displacement along a coordinate ends where an actuator reaches its limit; the load acts only along this coordinate.",),
     )
 
     coordinates: tuple[str, ...]
