@@ -130,7 +130,7 @@ def hinge_stress(
     assembly = expand(mechanism)
     sized = sized_links(assembly)
     if not sized:
-        raise refuse("stress", "no link has a section to check", "Stress is computed in notches, necks, leaves and rods")
+        raise refuse("stress", "no link has a section to check", "Use notches, necks, leaves or rods")
     wrenches = corner_wrenches(mechanism, model, limits, tuple(sized), command)
     points = limits.points(wrenches.ndim - 3)
     rows = _rows(list(sized.values()), wrenches, points)
