@@ -417,7 +417,7 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
                 yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
             except DesignError as error:
                 reason = "; ".join(finding.what for finding in error.findings)
-                what = f"affected by a free internal mode, which strains {name}, whose stiffness is unknown: {reason}"
+                what = f"affected by a free internal mode that strains {name}, whose stiffness is unknown: {reason}"
                 raise refuse(", ".join(watching), what, "Specify the stiffness, or move the gauge to the platform") from error
 
 

@@ -282,7 +282,7 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
     30.28
     """
     if np.any(np.real(actuator_of(assembly.links[drive].part).free_deformation)[..., 1:]):
-        raise refuse(drive, "its stroke is not along its axis, as the series springs of this model require", "")
+        raise refuse(drive, "its stroke is not only along its axis, but this model has springs only along the axis", "")
     ways = _links_at_bodies(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     if levers:
@@ -376,7 +376,7 @@ def _compliance(link: PlacedLink) -> Array:
     """Compliance of a link's part; for a restricted part only of its elastic DOFs, as freed ones have no stiffness."""
     part = link.part
     if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
-        raise refuse(link.name, "it has no axial stiffness, which the unit's stiffness requires", "")
+        raise refuse(link.name, "it has no axial stiffness, so the unit's stiffness is undefined", "")
     try:
         whole = compliance(part.part if isinstance(part, Restricted) else part, link.material)
     except DesignError as error:

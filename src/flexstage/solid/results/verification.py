@@ -499,7 +499,7 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     after = f"with calibrated hinges, up to {_percent(max(better))}"
     if all(row.trust is not TheoryCheck.FEA for row in rows):
         return f"{name} is {off}; {after}. Calibrate, then trust the lumped model."
-    rest = "The remaining difference is the elasticity of bodies and joints, which only the solid model includes. Trust FEA."
+    rest = "The remaining difference is due to the elasticity of bodies and joints, which only the solid model includes. Trust FEA."
     return f"{known[:1].upper()}{known[1:]}; {after}. {rest}"
 
 
