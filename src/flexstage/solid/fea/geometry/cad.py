@@ -176,7 +176,7 @@ def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
     nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _distance(face, origin) / np.sqrt(area), default=None)
     if nearest is None or _distance(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
         best = "" if nearest is None else f"the best face in its plane has an area of {nearest.mass:.4g} mm^2 instead of {area:.4g} mm^2"
-        found = "no flat face lies in its plane" if nearest is None else f"{best}; its centre is {_distance(nearest, origin):.3g} mm off"
+        found = "no flat face is in its plane" if nearest is None else f"{best}; its centre is {_distance(nearest, origin):.3g} mm off"
         what = f"the end face of {joint.link} does not meet {joint.body}: {found}"
         return Finding(joint.name, what, "Move the outline so that it covers the end face")
     nearest.name = joint.name
