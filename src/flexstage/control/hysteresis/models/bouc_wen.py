@@ -81,8 +81,7 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
             what = f"gamma is {gamma:g} 1/V (expected above {-beta:g} and at most beta, {beta:g}): loops would not dissipate energy"
             yield Finding(where, what, "Choose -beta < gamma <= beta")
         elif 2.0 * lag * beta / (beta + gamma) > gain * (1.0 + 1e-12):
-            most = f"{2.0 * lag * beta / (beta + gamma):g} m/V"
-            what = f"just after a reversal, the hysteretic term h changes by {most}, more than the gain, {gain:g} m/V"
+            what = f"just after a reversal, the lag h changes by {2.0 * lag * beta / (beta + gamma):g} m/V, more than the gain {gain:g} m/V"
             yield Finding(where, f"{what}: the stroke would fall with rising voltage", "Choose a smaller lag, which makes narrower loops")
 
 
