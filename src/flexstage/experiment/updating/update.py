@@ -431,7 +431,8 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:
             yield (
-                f"{name} changed by {abs(moved):.2g} prior standard deviations ({100.0 * prior:.2g} % each): another parameter may be wrong."
+                f"{name} changed by {abs(moved):.2g} prior standard deviations ({100.0 * prior:.2g} % each): "
+                "another parameter may be wrong."
             )
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
