@@ -48,8 +48,8 @@ def told(setup: RigSetup, stage: fs.Mechanism = STAGE) -> str:
         (replace(SOUND, filter=AntiAlias(order=-1)), ("filter", "wrong order (got -1)")),
         (replace(SOUND, filter=AntiAlias(corner=0.0)), ("filter.corner", "0 Hz")),
         (replace(SOUND, sensing=Sensing(density=-1e-9)), ("sensing.density", "-1 nm/Hz^0.5")),
-        (replace(SOUND, sensing=Sensing(density=1e-5)), ("S1", "half its range of 500 um")),
-        (replace(SOUND, sensing=Sensing(drift=1e-3)), ("S6", "half its range", "Reduce the drive or the drift")),
+        (replace(SOUND, sensing=Sensing(density=1e-5)), ("S1", "half of its range, 500 um")),
+        (replace(SOUND, sensing=Sensing(drift=1e-3)), ("S6", "half of its range", "Reduce the drive or the drift")),
     ],
 )
 def test_bad_set_ups_are_refused(setup: RigSetup, texts: tuple[str, ...]) -> None:
