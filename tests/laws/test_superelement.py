@@ -399,7 +399,7 @@ def test_matrices_that_are_wrong_are_refused_with_what_is_found(tmp_path, fault)
 
 def test_units_that_are_not_the_files_are_told(tmp_path):
     part = replace(written(elastic(13), tmp_path, "millimetres"), units=FileUnits.SI)
-    with pytest.raises(DesignError, match='with units = "N-mm-t"'):
+    with pytest.raises(DesignError, match='Use units = "N-mm-t"'):
         superelement(part)
 
 
@@ -490,4 +490,4 @@ def test_links_name_a_body_for_every_port(tmp_path):
         told = check(replace(made, links={"frame": replace(link, joins=joins)}))
         assert any("expected left, right, top" in each.what for each in told)
     (told,) = check(replace(made, links={"frame": replace(link, bends=None)}))
-    assert 'as part "body" has ports' in told.what
+    assert 'missing: part "body" has ports' in told.what
