@@ -35,7 +35,7 @@ class LoadRange(Result):
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
         notes=(
-            "Forces over strokes from zero voltage, with permanent load, not preload. The limit of tension is preload plus tensile limit.",
+            "Strokes are from zero voltage; forces include permanent load, no preload. The limit of tension is preload plus tensile limit.",
         ),
     )
 

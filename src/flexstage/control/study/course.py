@@ -157,7 +157,7 @@ def sampled_course(course: NamedTrajectory, coordinates: Coordinates, step: floa
     count = round(seconds / step)
     if not 2 <= count <= _MOST_SAMPLES:
         what = f"wrong number of samples (got {float(count):.7g} for {seconds:g} s at {1.0 / step:g} Hz, expected 2 to {_MOST_SAMPLES})"
-        require([Finding("seconds", what, "Change seconds, or the sampling rate")])
+        require([Finding("seconds", what, "Change the duration (seconds) or the sampling rate")])
     times = step * np.arange(count)
     return times, reference(course.trajectory, coordinates.names, times)
 

@@ -87,7 +87,7 @@ def _pattern(where: str, pattern: Pattern, *, has_up: bool = True) -> Iterator[F
     if len(ends) == 1:
         yield Finding(here, f"{ends[0]} without its counterpart", "Specify both from and to, or at and along")
     elif ends and (pattern.at != usual.at or pattern.along != usual.along):
-        yield Finding(here, "both from and to, and at or along specified", "Specify either from and to, or at and along")
+        yield Finding(here, "the ends and the position are both specified", "Specify either from and to, or at and along")
     up = None if not has_up and pattern.up == usual.up else pattern.up
     yield from _pair(f"{here}.{'to' if ends else 'along'}", pattern.direction, f"{here}.up", up)
 
