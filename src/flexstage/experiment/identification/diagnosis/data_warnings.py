@@ -60,7 +60,9 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
     for group in close:
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
-            found.append(f"inputs or outputs can separate no more than {len(group)} close modes ({near} Hz). Add inputs and outputs.")
+            found.append(
+                f"{min(inputs, outputs)} inputs or outputs cannot separate more close modes than those at {near} Hz. Add inputs and outputs."
+            )
     systematic = np.flatnonzero(modes.widening > 1.0)
     if len(systematic):
         listed = ", ".join(f"{abs(poles[index]):.5g} Hz (intervals {modes.widening[index]:.2g} times wider)" for index in systematic)
