@@ -109,7 +109,7 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
             yield Default(f"parts.{name}", "stack mass 0 by default", advice, _STILL)
         if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
-            what, advice = f"bias {middle:g} V (mid-range) by default", f'Specify the bias, the zero of strokes: bias = "{middle:g} V"'
+            what, advice = f"bias {middle:g} V (mid-range) by default", f'Specify the voltage of zero stroke: bias = "{middle:g} V"'
             yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
 
 
