@@ -76,7 +76,7 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
         gain, lag, beta, gamma = (float(getattr(model, name)[axis]) for name in ("gain", "lag", "beta", "gamma"))
         where = f"Bouc-Wen model of axis {axis}"
         if not np.all(np.isfinite([gain, lag, beta, gamma])) or lag <= 0.0:
-            yield Finding(where, f"lag is not positive ({lag:g} m/V), or a value is not finite", "Use finite values and a positive lag")
+            yield Finding(where, f"a value is not finite, or lag is not positive (got {lag:g} m/V)", "Use finite values and a positive lag")
         elif not -beta < gamma <= beta:
             what = f"gamma is {gamma:g} 1/V (expected above {-beta:g} and at most beta, {beta:g}): loops would not dissipate energy"
             yield Finding(where, what, "Choose -beta < gamma <= beta")

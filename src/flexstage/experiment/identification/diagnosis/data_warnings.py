@@ -61,7 +61,7 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
             found.append(
-                f"{min(inputs, outputs)} inputs or outputs cannot separate more close modes than those at {near} Hz. Add inputs and outputs."
+                f"{min(inputs, outputs)} inputs or outputs cannot separate more modes than those near {near} Hz. Add inputs and outputs."
             )
     systematic = np.flatnonzero(modes.widening > 1.0)
     if len(systematic):
