@@ -27,8 +27,8 @@ SPECIFICATIONS = {
         motion = { x = "50 um", y = "50 um", z = "150 um", rx = "733 urad", ry = "733 urad", rz = "244 urad" }
         payload = { mass = "1 kg", size = ["300 mm", "300 mm", "5 mm"] }
         box = { size = ["380 mm", "380 mm", "115 mm"], opening = ["110 mm", "110 mm"] }
-        actuators.like = ["PSt 1000/10/150 VS18"]
-        requirements.frequency = "at least 280 Hz" """,
+        actuators.like = ["PSt 1000/10/150 VS18", "PSt 1000/16/200 VS25"]
+        requirements.frequency = "at least 100 Hz" """,
     "scanner": """
         motion = { x = "50 um", y = "50 um" }
         payload = { mass = "30 g", size = ["30 mm", "30 mm", "5 mm"] }
