@@ -169,9 +169,7 @@ def _size_findings(stiffness: tuple[Path, int, int, int], *others: tuple[Path, i
     """Errors of inconsistent sizes, before memory allocation."""
     path, rows, columns, entries = stiffness
     if rows != columns or entries < rows:
-        what = (
-            f"invalid stiffness (got {rows} x {columns} with {entries} entries at most, expected a square one with an entry in every row)"
-        )
+        what = f"invalid stiffness (got {rows} x {columns} with {entries} entries at most, expected a square matrix without zero rows)"
         yield Finding(str(path), what, "Export the whole matrix over ports and internal coordinates")
     for other, *size, _ in others:
         if size != [rows, columns]:

@@ -33,9 +33,7 @@ class MapError(Result):
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Error of the linear map",
-        "errors_and_strokes",
-        notes=("Finite minus linear kinematics, the worst of {self.points} combinations of strokes.",),
+        "Error of the linear map", "errors_and_strokes", notes=("The largest error at {self.points} combinations of strokes.",)
     )
 
     actuators: tuple[str, ...]

@@ -430,16 +430,10 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
         )
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:
-            yield (
-                f"{name} changed by {abs(moved):.2g} prior standard deviations ({100.0 * prior:.2g} % each): "
-                "another parameter may be wrong."
-            )
+            yield f"{name} changed by {abs(moved):.2g} prior standard deviations ({100.0 * prior:.2g} %): another parameter may be wrong."
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
-            yield (
-                f"the test shows {group.seen} of the repeated modes {' and '.join(map(str, group.numbers))}; "
-                "the mean of those found represents all."
-            )
+            yield f"the test shows {group.seen} of the repeated modes {' and '.join(map(str, group.numbers))}; their mean represents all."
 
 
 def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:

@@ -175,9 +175,7 @@ def _not_followed(last: Point, why: str, bent: Point | None) -> LowerBoundError:
     """Error of a path that ends without a critical point: stable up to its end, or up to its bend."""
     bend = _bend(bent, last)
     bound = last.factor if bend is None else bend
-    reason = (
-        why if bend is None else f"an imperfect bifurcation, where the stage begins to move {1.0 / _FLAT:g} times as far per unit of load"
-    )
+    reason = why if bend is None else f"an imperfect bifurcation, where motion per unit of load becomes {1.0 / _FLAT:g} times larger"
     what = f"stable up to {bound:.6g} times the load; the path is not followed beyond: {reason}"
     return LowerBoundError([Finding("load", what, "Follow the load with fs.continuation, or use another load")], bound)
 
