@@ -60,8 +60,8 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
 def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
     """Isolate one unit in its own frame, with a massless platform at its output; `guide` constrains the output to a direction.
 
-    The reference point of the output is the joint with the platform. Overrides of this instance are kept. Other units, and outlines that
-    belong to bodies of the stage (lugs of the platform), are omitted.
+    The reference point of the output is the joint with the platform. Values that the placement changes in the unit are kept. Other units,
+    and outlines that belong to bodies of the stage (lugs of the platform), are omitted.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(isolate(double_triangle(), "B4").units)

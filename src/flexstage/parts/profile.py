@@ -117,7 +117,7 @@ class Parabolic(_Conic):
 
     @property
     def radius_at_throat(self) -> Number:
-        """Radius of curvature at the thinnest point, a^2 / 2c [m]."""
+        """Radius of curvature at the thinnest point, a^2 / (2 c) [m], with a = `along` and c = `across`."""
         return self.along * self.along / (2.0 * self.across)
 
     def height(self, station: Array) -> Array:

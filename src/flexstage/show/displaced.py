@@ -166,7 +166,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
         section("Instance by instance", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
         caveat_section(mechanism, found.warnings),
-        None if worst is None else section("The most critical instance, point by point", misaligned_tables(worst)),
+        None if worst is None else section("The most critical sample at each equilibrium", misaligned_tables(worst)),
     ]
     data, said = (still_data(mechanism), "") if worst is None else (misalign_data(mechanism, worst), _BENT)
     provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"

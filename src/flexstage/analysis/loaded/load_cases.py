@@ -49,7 +49,7 @@ class LoadCase(CheckedFields):
     """Load case: one load grows at an operating point. `grows` contains this load by components, e.g. the weight or the specified forces.
 
     `stays` contains the constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. A displaced
-    coordinate remains free under the force that displaces it, unless the coordinate is `locked`. `gravity` is the fraction of the weight.
+    coordinate is free to move and its force is constant, unless the coordinate is `locked`. `gravity` is the fraction of the weight.
     """
 
     load: str

@@ -63,7 +63,7 @@ def workspace(
     """Compute strokes, forces, clearances and safety factors.
 
     Prints strokes, forces, voltages, gauge readings, clearance, kinematic error, stress, buckling and loads. For a force-driven stage,
-    prints strokes with the causes of their limits, currents, voltages and heat.
+    prints currents, voltages, heat, and strokes with the causes of their limits.
     """
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
@@ -168,7 +168,8 @@ def budget(
 ) -> CommandResult:
     """Compute the error budget of each axis in nm and nrad.
 
-    The contributions are lost motion, crosstalk, error of the linear map, gauge noise, quantisation and drift, by the lumped model.
+    The contributions are lost motion, crosstalk, error of linear kinematics, gauge noise, quantisation and drift. The lumped model computes
+    all.
 
     For force-driven stages, the contributions in open loop are parasitic motion, gauge noise, quantisation and drift.
 

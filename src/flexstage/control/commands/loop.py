@@ -67,7 +67,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             "Exported file: plant.mat, controller.c, controller.fmu, stage.loop.fmu (whole loop); path.csv with --tracking. Repeatable.",
         ),
     ] = None,
-    hardware: Annotated[Path | None, text_option("--hardware", "FILE.c", "C code of the controller: FILE.c, FILE.h, FILE_test.c.")] = None,
+    hardware: Annotated[Path | None, text_option("--hardware", "FILE.c", "Write the controller in C: FILE.c, FILE.h, FILE_test.c.")] = None,
     full: Full = False,
     float32: Annotated[bool, typer.Option("--float32", help="Use 32-bit floating-point numbers in the code of --hardware.")] = False,
     example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Commented set-up file to write, without a computation.")] = None,

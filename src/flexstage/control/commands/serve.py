@@ -27,7 +27,7 @@ def serve(
 ) -> None:
     """Serve a virtual controller of a stage over TCP.
 
-    Simulates the same loop as flexstage loop. Programs on this computer send commands of the General Command Set 2.0 to the
+    Simulates the same loop as flexstage loop. Programs on this computer can send commands of the General Command Set 2.0 to the
     controller. Ctrl+C ends the command.
     """
     asked = LoopSetup() if setup is None else load_setup(setup)

@@ -193,7 +193,7 @@ def with_ground(assembly: Assembly, order: Layout) -> Array:
     True
     """
     if PLATFORM not in assembly.bodies:
-        raise refuse("bodies", f'unknown body "{PLATFORM}"', f"Declare the body that the stage positions under bodies.{PLATFORM}")
+        raise refuse("bodies", f'unknown body "{PLATFORM}"', f"Declare the moving platform under bodies.{PLATFORM}")
     centre = assembly.bodies[PLATFORM].reference
     carries = [transport(assembly.bodies[body].reference - centre) for body in order.bodies]
     batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))

@@ -300,5 +300,5 @@ def _top(stage: Mechanism, carried: Mapping[str, Mount]) -> str | None:
     top = [name for name in carried if name not in bearing]
     if len(top) != 1:
         what = f'unknown body "{PLATFORM}", and no unique topmost stage (got {", ".join(top) or "none"})'
-        raise refuse("stages", what, f"Declare the body that the stage positions under bodies.{PLATFORM}")
+        raise refuse("stages", what, f"Declare the moving platform under bodies.{PLATFORM}")
     return top[0]

@@ -33,7 +33,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     for valid parts. The graph is checked only if all names exist, matrix files only if all other checks pass.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
-    ['bodies: unknown body "platform". Declare the body that the stage positions under bodies.platform.']
+    ['bodies: unknown body "platform". Declare the moving platform under bodies.platform.']
     """
     for ground in (kind_findings, copy_findings, place_findings):
         if findings := tuple(ground(mechanism)):
@@ -58,7 +58,7 @@ def require_valid(mechanism: Mechanism) -> Mechanism:
     >>> require_valid(Mechanism("empty"))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: bodies: unknown body "platform". Declare the body that the stage positions under bodies.platform.
+    flexstage.base.finding.DesignError: bodies: unknown body "platform". Declare the moving platform under bodies.platform.
     """
     require(check(mechanism))
     return mechanism

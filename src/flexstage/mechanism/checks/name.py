@@ -120,7 +120,7 @@ def _owners(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
     if PLATFORM not in mechanism.bodies:
-        yield Finding("bodies", f'unknown body "{PLATFORM}"', f"Declare the body that the stage positions under bodies.{PLATFORM}")
+        yield Finding("bodies", f'unknown body "{PLATFORM}"', f"Declare the moving platform under bodies.{PLATFORM}")
     if GROUND in mechanism.bodies:
         yield Finding(f"bodies.{GROUND}", f'"{GROUND}" is implied and cannot be a body of the stage', "Rename the body")
     for unit, drawn in mechanism.units.items():

@@ -134,7 +134,7 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
             loss_table(lost),
             *(pictures if lost.budget else []),
             parasitic_table(lost),
-            fold("Budget by part, and energy by part", budget_table(lost), energy_table(lost)),
+            fold("Lost motion and energy by part", budget_table(lost), energy_table(lost)),
             Folded("Gains, crosstalk, corrected mapping", (gain_table(lost), crosstalk_table(lost), correction_table(lost))),
             *[
                 fold(f"Terms in the transmission ratio of unit {name} that Eq. 3 omits", omitted_table(unit.omitted))

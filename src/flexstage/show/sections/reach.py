@@ -56,7 +56,7 @@ def strength_section(analysis: Analysis) -> Section | None:
 
 def _strength(reach: Workspace) -> list[Block | None]:
     stressed = reach.stress is not None and bool(reach.stress.links)
-    text = "Stress, buckling and loads: the worst values over all corners of the stroke ranges from zero voltage, with permanent load."
+    text = "Stress, buckling, loads: with permanent load, the worst values at all corners of the stroke ranges, from zero voltage."
     return [
         Prose(text) if stressed else None,
         weakest_first(reach.stress),

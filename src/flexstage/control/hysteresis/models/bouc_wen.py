@@ -53,7 +53,7 @@ class BoucWen(Hysteresis):
         return self.step(np.zeros((self.axes, 2)), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """Return the next state (axes, 2), voltage and h, and the strokes (axes,), for the next voltages (axes,)."""
+        """Return the next state (voltage and h in two columns) and the strokes (axes,), for the next voltages (axes,)."""
         volts, lag = state.T
         slow, fast = np.maximum(self.beta - self.gamma, _TINY), self.beta + self.gamma
         sign, way = np.sign(value - volts), np.abs(value - volts)

@@ -52,7 +52,7 @@ class Mirrors:
         return (kinds >> self.axes.index(axis)) % 2 == 1
 
     def twist_kinds(self, rotation: Array) -> Array:
-        """Return the kinds (6,) of translations along the columns of `rotation` and of rotations about them.
+        """Return the symmetry kinds (6,), see `is_odd`, of translations along the columns of `rotation` and of rotations about them.
 
         Each column is parallel or normal to the planes.
         """
