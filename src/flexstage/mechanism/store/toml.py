@@ -21,7 +21,7 @@ HEADINGS: Mapping[str, str] = {
     "parts": "Parts: one entry per distinct part; links refer to parts by name.",
     "bodies": "Bodies of the stage. The ground exists implicitly; the stage positions the platform.",
     "links": "Links of the stage: joined bodies (first, second) and position.",
-    "units": "Subassemblies: each drawn once in a local frame, x = output direction. A link joins two bodies; bends = axis of compliant rotation.",
+    "units": "Subassemblies in local frames, x = output direction. A link joins two bodies; bends = axis of compliant rotation.",
     "placements": "Instances of the units. first = position angle of the first instance; facing = its output direction.",
     "sensors": "Gauges (displacement sensors) from the catalogue, or with their data.",
     "gauges": "Positions of the gauges: x of each instance points from the gauge to its target.",

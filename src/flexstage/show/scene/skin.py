@@ -72,8 +72,8 @@ def loft(
     """Build the surface through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first.
 
     If `closed`, the surface has end faces. `shares` (s,) are the weights of the second of two bodies that move the rings (see
-    `DrawnSurface`), by default evenly spaced from 0 at the first ring to 1 at the last. The rings with indices `ringed` are sharp edges, and
-    so are the lines from ring to ring through the points that `along` selects (`ROUND`: none).
+    `DrawnSurface`), by default evenly spaced from 0 at the first ring to 1 at the last. The rings with indices `ringed` are sharp edges,
+    and so are the lines from ring to ring through the points that `along` selects (`ROUND`: none).
 
     >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     >>> box = loft(np.stack([square, square + [0, 0, 1.0]]))
