@@ -363,7 +363,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (body(Body(mass=1.0, solids={"s": Block("steel", (1.0, 1.0, 1.0))})), ["bodies.b", "both solids and mass specified"]),
         (body(Body(centre=O)), ["bodies.b", "centre without a mass"]),
         (body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 3.0))), ["bodies.b.inertia", "1, 1, 3", "sum of the other two"]),
-        (body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 1.0, xy=2.0))), ["bodies.b.inertia", "-1", "negative"]),
+        (body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 1.0, xy=2.0))), ["bodies.b.inertia", "-1", "between 0 and"]),
         (body(Body(solids={"s": Block("steel", (0.1, 0.2, 0.1), hole=(0.05, 0.2))})), ["solids.s.hole.y", "200 mm", "block, 200 mm"]),
         (body(Body(solids={"s": Cylinder("steel", 0.1, 0.2, bore=0.1)})), ["solids.s.bore", "100 mm", "diameter, 100 mm"]),
         (body(Body(solids={"s": Cylinder("steel", 0.1, 0.2, along=O)})), ["solids.s.along", "zero"]),

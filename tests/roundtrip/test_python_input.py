@@ -117,7 +117,8 @@ def test_what_does_not_fit_into_memory_is_refused_with_what_would(monkeypatch):
     monkeypatch.setattr("flexstage.base.processes.memory.ALWAYS", 0.0)
     for read in (fs.ideal, fs.lumped):
         with pytest.raises(
-            fs.DesignError, match=r"3 bodies and .* links need about .* GB of memory, but only 1e-06 GB is available\. About \d+ bodies"
+            fs.DesignError,
+            match=r"3 bodies and .* links need about .* GB of memory, but only 1e-06 GB is available\. Join .* about \d+ bodies",
         ):
             read(STAGE)
 

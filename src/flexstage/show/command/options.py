@@ -116,7 +116,7 @@ InputDensities: TypeAlias = Annotated[
     text_option(
         "--input-asd",
         "INPUT=DENSITY",
-        "Amplitude spectral density of the white noise of an input, or of its velocity or acceleration (as the unit specifies), e.g. "
+        "Amplitude spectral density of white noise. The unit specifies whether of the input, its velocity or its acceleration, e.g. "
         '"ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
     ),
 ]

@@ -208,7 +208,7 @@ def _platform_modes(modes: Modes) -> Table | None:
     if modes.local:
         lowest = number(modes.mode(min(modes.local)).frequency, _DIGITS)
         count = count_text(len(modes.local), "local mode")
-        notes = [f"{count} (platform nearly at rest), from {lowest} Hz to 1.5 times the highest platform mode."]
+        notes = [f"{count} (platform nearly at rest), {lowest} Hz to 1.5 times the highest."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
     return None if table is None else merge_rows(table)
