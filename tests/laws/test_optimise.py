@@ -227,6 +227,27 @@ def test_of_several_contradictions_as_many_are_found_as_are_asked_for(tmp_path):
     assert len(every) > 1
     (first,) = optimise(study, wanted, contradictory=1).contradictions
     assert (first.limits, first.violation) == (every[0].limits, every[0].violation)
+    (one,) = optimise(replace(study, limits=first.limits), wanted).contradictions
+    assert one.overall == pytest.approx(first.violation, rel=1e-3)
+    assert first.overall >= max(each.violation for each in every) * (1.0 - 1e-3)
+
+
+def test_relaxed_by_the_least_violation_all_limits_are_met(tmp_path):
+    """The overall violation is the smallest factor for all limits: with a little more a design meets them, with a little less none."""
+    texts = {"stiffness.z": (50.0, "N/um"), "frequency.platform.1": (40.0, "Hz"), "height": (1.0, "mm")}
+
+    def best(relaxed: float):
+        signs = {"stiffness.z": 1.0, "frequency.platform.1": -1.0, "height": 1.0}
+        lines = [
+            f'"{key}" = "at {"most" if signs[key] > 0.0 else "least"} {value * (1.0 + signs[key] * relaxed):.9g} {unit}"'
+            for key, (value, unit) in texts.items()
+        ]
+        text = post_variables() + "[limits]\n" + "\n".join(lines) + '\n[optimise]\nmaximise = "f1"\nstarts = 2'
+        return optimise(*study_of(tmp_path, POST, text))
+
+    overall = best(0.0).contradictions[0].overall
+    assert best(1.001 * overall).point is not None
+    assert best(0.99 * overall).point is None
 
 
 def test_contradicting_limits_are_named_and_nothing_else(tmp_path):

@@ -169,10 +169,7 @@ def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
     if within.spec.prefilter and isinstance(controller, Decentralised):
         controller = replace(controller, prefilters=prefilters(within, known_loops(within, controller)))
     return _candidate(
-        within,
-        controller,
-        _judge(within, controller),
-        note="; this controller is tuned for the highest bandwidth, because the search found none better",
+        within, controller, _judge(within, controller), note="; this is the controller of highest bandwidth: no better one was found"
     )
 
 

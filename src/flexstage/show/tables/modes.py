@@ -7,9 +7,7 @@ from flexstage.models.batch.choice import THRESHOLD
 from flexstage.show.display import percent
 from flexstage.show.table import Table, batch_note, result_table
 
-PLATFORM_MODES = (
-    f"With each platform mode, the summed modes reach {percent(THRESHOLD, 2)} of the platform's compliance in one more direction."
-)
+PLATFORM_MODES = f"With each platform mode, the sum reaches {percent(THRESHOLD, 2)} of the platform's compliance in one more direction."
 """Note on the criterion for platform modes."""
 
 _FURTHER = 3

@@ -141,12 +141,14 @@ class Contradiction:
     """Minimal set of limits that contradict each other within the ranges.
 
     `violation` is the minimum, over all designs, of the largest relative violation of these limits. `point` is the design at this minimum;
-    it violates each limit in `limits` by at most `violation`.
+    it violates each limit in `limits` by at most `violation`. `overall` is this minimum for all limits together (without those of earlier
+    contradictions).
     """
 
     limits: tuple[Requirement, ...]
     violation: float
     point: Point
+    overall: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -60,7 +60,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     if least >= 1.0 / SIGNIFICANT:
         return ()
     where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
-    effect = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs with a factor below 1 fail"
+    effect = f"stiffness is up to {100.0 / least:.2g} % lower than computed" if least >= 1.0 else "designs with a factor below 1 fail"
     what = f"weight, payloads and forces reduce stiffness: smallest load factor {least:.3g} ({where}); {effect}"
     advice = (
         'Add to [limits] e.g. buckling = "at least 20"'

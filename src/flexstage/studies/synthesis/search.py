@@ -51,7 +51,7 @@ class Relaxation:
 
 @dataclass(frozen=True)
 class FailedPair:
-    """A pair without a design that meets all requirements: the least relative violation, and the contradicting requirements.
+    """A pair without a design that meets all requirements: least relative `violation` of all together, and contradicting `requirements`.
 
     `relaxed` are the best values of single requirements if all others are met. If no pair has an answer, these values are computed for the
     pairs with the least violations. `corrected` are stricter limits of the lumped model, set because better models missed requirements.
@@ -269,7 +269,7 @@ def _failed(spec: Specification, pair: CandidatePair, found: Optimum, corrected:
         return FailedPair(*names, None, {}, found.failure, corrected=corrected)
     first = found.contradictions[0]
     stated = loads(draw(pair.architecture, spec, pair.actuator)).requirements
-    return FailedPair(*names, first.violation, {each.key: stated[each.key] for each in first.limits}, corrected=corrected)
+    return FailedPair(*names, first.overall, {each.key: stated[each.key] for each in first.limits}, corrected=corrected)
 
 
 def _answer(spec: Specification, pair: CandidatePair, found: Optimum, corrected: Mapping[str, str]) -> Answer:

@@ -277,9 +277,7 @@ def post_buckling_path(
     critical = critical_load(model, load, rest=rest, weight=weight)
     if critical.kind is Kind.LIMIT:
         raise refuse(
-            "load",
-            f"the critical point, at {critical.factor:.6g} times the load, is a limit point without a branch",
-            "Follow the load with fs.continuation",
+            "load", f"limit point without a branch at {critical.factor:.6g} times the load", "Follow the load with fs.continuation"
         )
     return beyond(critical, load, side=side, step=step, points=points, options=options)
 

@@ -32,7 +32,7 @@ def contradictions(
         alone = _least_violation(setting, held, begins[:1], report)
         known = (held, alone) if alone is not None and alone.violation > SPARE else (left, least)
         chosen, ended = _irreducible_set(setting, *known, begins, report)
-        found.append(Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point))
+        found.append(Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point, least.violation))
         left = tuple(number for number in left if number not in chosen)
     return tuple(found)
 

@@ -35,7 +35,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
             for each in found.failed
         ]
         notes = [
-            "Least violation: relative violation of the most violated requirement; the search minimises it within all ranges.",
+            "Least violation: if each requirement is relaxed by this percentage, a design meets all (lumped model, found by search).",
             "Possible with one relaxed: the best value of this requirement that the search finds if all others are met.",
         ]
         heads = ["architecture", "actuator", Column("least violation", "%"), "contradicting requirements", "possible with one relaxed"]

@@ -109,10 +109,7 @@ def spread_table(found: Toleranced) -> Table:
             cells[-1] = "-"
         rows.append((Cell(name, Mark.STRONG), "" if form.unit == "1" else form.unit, *cells))
     heads = ["nominal", "mean", "deviation", "1 %", "5 %", "median", "95 %", "99 %", "linear"]
-    note = (
-        "linear: standard deviation to first order, sqrt(sum (dy/dx s)^2), with exact derivatives dy/dx and standard deviations s of the "
-        "entries. -: the response is nonlinear, or not smooth."
-    )
+    note = "linear: standard deviation to first order, with exact derivatives. -: the response is nonlinear, or not smooth."
     return make_table("Responses", ["response", "unit", *(Column(head) for head in heads)], rows, notes=[note])
 
 
