@@ -23,7 +23,9 @@ from flexstage.control.study.choices import Compensation
 from flexstage.control.study.file import loads_setup
 from flexstage.control.study.hardware.amplifiers import ChargeSetup
 from flexstage.control.study.resolve import resolve
-from flexstage.control.study.setup import DampingSetup, HystereticStacks, LoopSetup
+from flexstage.control.study.runs import driven_machine
+from flexstage.control.study.setup import ControllerSetup, DampingSetup, HystereticStacks, LoopSetup
+from flexstage.control.study.study import loop_study
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.lumped import lumped
@@ -128,6 +130,17 @@ def test_hysteresis_is_left_above_the_corner_and_whole_below(period, corner, sha
     rising, falling = np.array_split((strokes(volts, path) - path)[-period:], 2)
     kept = np.array_split((strokes(charge, path) - path)[-period:], 2)
     assert np.max(np.abs(kept[0] - kept[1][::-1])) / np.max(np.abs(rising - falling[::-1])) == pytest.approx(share, rel=0.1)
+
+
+def test_charge_leaks_with_the_time_constant_of_the_corner():
+    """After R C = 1/(2 pi corner), 1/e of the removed hysteretic stroke is still removed."""
+    amplifier = ChargeSetup(coupling=0.3, corner=40.0, residual_hysteresis=0.2)
+    asked = LoopSetup(amplifier=amplifier, hysteresis=HystereticStacks(width=0.1), controller=ControllerSetup(quick=True))
+    found = loop_study(case("parallelogram"), asked)
+    relief = driven_machine(found.settled, found.controller, found.stacks).relief
+    samples = 1.0 / (2.0 * np.pi * 40.0 * found.settled.plant.hardware.step)
+    assert (1.0 - relief.leak[0]) ** samples == pytest.approx(np.exp(-1.0), rel=1e-9)
+    assert relief.residual_hysteresis[0] == 0.2
 
 
 def strokes(given, path):

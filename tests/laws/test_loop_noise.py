@@ -74,7 +74,9 @@ def small_loop(resolution: float = 2e-10):
 KINDS = {"floor": ("ground.",), "gauge noise": ("noise.S",), "amplifier noise": ("noise.B",), "all": ("ground.", "noise.")}
 
 
-@pytest.mark.parametrize("kind", [*(pytest.param(kind, marks=pytest.mark.full) for kind in list(KINDS)[:-1]), "all"])
+@pytest.mark.parametrize(
+    "kind", [*(pytest.param(each, marks=pytest.mark.full) for each in ("floor", "amplifier noise")), "gauge noise", "all"]
+)
 def test_the_simulated_variance_is_that_of_the_budget(kind):
     """Of each source alone, and of all with rounding: eight seeds, their mean within four deviations (and 1 % for straight lines)."""
     closed = small_loop()

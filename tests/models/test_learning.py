@@ -9,7 +9,7 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
 from flexstage.control.export.files import path_file
-from flexstage.control.learning.learn import fade_ends, filter_path, robust_band, wanted_readings
+from flexstage.control.learning.learn import LearningSettings, fade_ends, filter_path, learn, robust_band, wanted_readings
 from flexstage.control.learning.responses import Band, readings, through
 from flexstage.control.learning.shaper import zv, zvd
 from flexstage.control.show.figures.time import lesson_figure
@@ -100,6 +100,18 @@ def test_a_raster_is_learned_down_to_what_does_not_repeat():
     assert found.tracking.at("x", "true rms") < 0.3 * runs(replace(given, setup=replace(given.setup, follow=None)), control, closed)[
         0
     ].tracking.at("x", "true rms")
+
+
+def test_what_does_not_repeat_is_the_noise_of_the_passes():
+    """White noise of one micrometre on a pass that follows its command: unbiased by the few repeats, in the band of learning."""
+    _, control, closed = closed_of("parallelogram")
+    rng = np.random.default_rng(5)
+    lesson = LearningSettings(passes=1, gain=0.6, spread=0.02, window=slice(1000, 9000))
+    still = np.zeros((10_000, 1))
+    seen = [learn(lambda path, _: path + 1e-6 * rng.standard_normal(path.shape), closed, control.system, still, lesson) for _ in range(4)]
+    gains = Band(seen[0].band).gains(np.abs(np.fft.fftfreq(len(still), closed.step)))
+    expected = 1e-6 * np.sqrt(np.mean(gains**2))
+    assert np.sqrt(np.mean([each.noise**2 for each in seen])) == pytest.approx(expected, rel=0.03)
 
 
 @pytest.mark.full
