@@ -139,6 +139,8 @@ def test_a_ball_on_a_flat_lifts_off_and_slips_by_its_forces():
     np.testing.assert_allclose(found.left, [0.6, 0.8], rtol=1e-9)
     np.testing.assert_allclose(found.slip, [3.0 / 1.2, 3.0 / 3.2], rtol=1e-9)
     assert seated(FLAT, PAIR, np.array([12.0, 0.0, 0.0, 0.0, 0.0, 0.0])).left == pytest.approx(-0.2)
+    pressed = seated(FLAT, PAIR, np.array([-70.0, 0.0, 0.0, 0.0, 0.0, 0.0])).pressure  # cube root of eight times the force
+    assert pressed == pytest.approx(2.0 * seated(FLAT, PAIR, np.zeros(6)).pressure, rel=1e-9)
 
 
 @pytest.mark.parametrize(

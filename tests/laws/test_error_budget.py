@@ -14,6 +14,7 @@ from flexstage.analysis.linear_statics.drift import drift
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.cases.registry import case
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.models.finite import forward_kinematics
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS
@@ -169,11 +170,18 @@ def stepping(stage, resolution):
 
 def test_steps_of_actuators_are_the_worst_of_their_signs():
     stage = stepping(case("double-triangle"), 40e-9)
-    found = budget(stage, {"z": 1e-6})
+    platform = stage.bodies["platform"]
+    tool = tuple(np.add(expand(stage).bodies["platform"].reference, (0.0, 0.0, 0.2)))
+    stage = replace(stage, bodies={**stage.bodies, "platform": replace(platform, points={**platform.points, "tool": tool})})
+    found, there = budget(stage, {"z": 1e-6}), budget(stage, {"z": 1e-6}, at="tool")
     gain = static_gain(lumped(stage), tuple(f"platform.{part}" for part in COMPONENTS), ideal(stage).actuators).values
     corners = np.array(np.meshgrid(*[(-20e-9, 20e-9)] * 3)).reshape(3, -1)
     worst = np.max(np.abs(gain[:, 3:] @ corners), axis=1)
     np.testing.assert_allclose(found.ideal.values[:, found.ideal.columns.index("actuator steps")], worst, rtol=1e-9, atol=1e-18)
+    tilted = gain[0] + 0.2 * gain[4]  # x at the tool, 0.2 m above the reference
+    assert there.ideal.values[0, there.ideal.columns.index("actuator steps")] == pytest.approx(
+        np.max(np.abs(tilted[3:] @ corners)), rel=1e-9
+    )
     assert found.sums.values[2, 0] == pytest.approx(np.nansum(found.ideal.values[2]), rel=1e-12)
 
 

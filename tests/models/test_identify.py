@@ -12,7 +12,7 @@ import scipy
 
 from flexstage.base.finding import DesignError
 from flexstage.experiment.example import one_mode_band, one_mode_record
-from flexstage.experiment.identification.confidence import deviations
+from flexstage.experiment.identification.confidence import deviations, misfits
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.jackknife import jackknife
 from flexstage.experiment.identification.likelihood import fit, noise
@@ -282,6 +282,14 @@ def test_intervals_hold_where_the_model_does_not(kind: Callable[[int], Made], le
 def test_intervals_are_those_of_noise_where_the_model_holds(kind: Callable[[int], Made]) -> None:
     """One in 1000 modes is doubted by chance."""
     assert np.mean(held(kind, range(40 if FULL else 3)).widening > 1.0) <= 0.05
+
+
+def test_intervals_widen_by_the_root_of_the_power_that_a_fit_leaves() -> None:
+    """Noise stated a quarter of the true one, as rms: intervals four times as wide, within the scatter of few lines."""
+    band, start = one_mode_band()
+    modal = fit(band, start).modal
+    stated = replace(band, variance=noise(band, modal) / 16.0)
+    assert misfits(stated, modal)[0] == pytest.approx(4.0, rel=0.3)
 
 
 def test_a_jackknife_of_noise_is_as_wide_as_noise() -> None:

@@ -12,12 +12,13 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.experiment.comparison import compare
 from flexstage.experiment.pipeline import identification, usable_measurement
 from flexstage.experiment.records.record import Channel
 from flexstage.experiment.updating.fit import Problem, gauss_newton
 from flexstage.experiment.updating.free import Prior, free
 from flexstage.experiment.updating.gains import _extrapolate_to_zero, measured_gains
-from flexstage.experiment.updating.rows import ModeRow, follow_modes, frequency_slopes, gain_slopes, start_design, static_gains
+from flexstage.experiment.updating.rows import ModeRow, follow_modes, frequency_slopes, gain_slopes, mode_rows, start_design, static_gains
 from flexstage.experiment.updating.text import updated_text
 from flexstage.experiment.updating.update import Identifiability, Updated, update
 from flexstage.experiment.virtual_rig.inputs import InputQuantity
@@ -165,6 +166,19 @@ def test_three_copies_are_told_together_only() -> None:
     assert np.ptp(found.changes) < 1e-6
     assert found.singular[0] > 5.0
     assert found.singular[1] < 1e-3
+
+
+def test_the_error_of_a_pairs_mean_frequency_is_that_of_two_independent_frequencies() -> None:
+    """By simulation: the logarithm of sqrt(mean f^2) of a pair whose frequencies scatter by 1 and 2 %."""
+    experiment = made(STAGE, noise=EXACT)
+    pair = next(row for row in mode_rows(STAGE, compare(STAGE, experiment), experiment) if len(row.measured) == 2)
+    first, second = pair.measured
+    spread = experiment.frequency_deviations.copy()
+    spread[[first, second]] = experiment.frequencies[[first, second]] * (0.01, 0.02)
+    noisy = replace(experiment, frequency_deviations=spread)
+    found = next(row for row in mode_rows(STAGE, compare(STAGE, noisy), noisy) if row.measured == pair.measured)
+    drawn = experiment.frequencies[[first, second]] + spread[[first, second]] * np.random.default_rng(2).standard_normal((40_000, 2))
+    assert found.deviation == pytest.approx(np.std(0.5 * np.log(np.mean(drawn**2, axis=1))), rel=0.02)
 
 
 def test_slopes_are_those_of_differences_also_through_a_split_pair() -> None:
