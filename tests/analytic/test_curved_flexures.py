@@ -89,8 +89,12 @@ def test_a_wide_leaf_that_is_warm_on_one_side_curves_both_ways() -> None:
     turned = float(state.rotation()[2])
     assert 1.001 < turned / curvature < 1.0 + 0.3 * 0.1  # a strip of about its width at each end bends by up to 1 + nu
     held = {f"platform.{name}": 0.0 for name in ("x", "y", "z", "rx", "ry", "rz")}
-    moment = fs.equilibrium(cantilever(small, WARM), hold=held).reactions[5] / (-curvature * 0.1 * 5e-3**3 / 12.0)
-    assert 1.001 < moment < 1.0 / (1.0 - 0.3)
+    clamped = fs.equilibrium(cantilever(small, WARM), hold=held)
+    moment = float(clamped.reactions[5])
+    assert 1.001 < moment / (-curvature * 0.1 * 5e-3**3 / 12.0) < 1.0 / (1.0 - 0.3)
+    along = 6.0 * moment / (0.1 * 5e-3**2)
+    over = 0.5 * 1e-3 * 5e-5 + 0.3 * along  # a clamp keeps the section straight: E alpha dT / 2 and what bending adds
+    np.testing.assert_allclose(strains(clamped).stress, np.sqrt(along**2 + over**2 - along * over), rtol=1e-3)
 
 
 @pytest.mark.parametrize(

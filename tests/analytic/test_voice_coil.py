@@ -10,7 +10,7 @@ import pytest
 from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.complete import analyse
 from flexstage.analysis.dynamics.response import response
-from flexstage.analysis.workspace.force_workspace import force_workspace
+from flexstage.analysis.workspace.force_workspace import force_workspace, input_limits
 from flexstage.base.finding import DesignError
 from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.registry import case
@@ -148,6 +148,7 @@ def test_reach_is_the_least_limit_over_stiffness():
     expected = {"peak current": 4.0, "continuous current": 1.8, "heat": 2.0**0.5, "voltage": 2.0, "maximum force": 40.0 / 12.0}
     assert by_cause == pytest.approx({f"motor {cause}": value for cause, value in expected.items()}, rel=1e-9)
     assert found.limited_by == ("motor heat",)
+    assert input_limits(mechanism, model).high == pytest.approx([2.0], rel=1e-9)  # short use: heat only at 2.83 A
     assert found.held_briefly == pytest.approx([2.0 * per_ampere], rel=1e-9)
     needs = [each.values.item() for each in (found.current, found.voltage, found.power, found.rise)]
     assert needs == pytest.approx([2.0**0.5, 6.0 * 2.0**0.5, 12.0, 60.0], rel=1e-9)

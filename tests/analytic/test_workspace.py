@@ -17,7 +17,7 @@ from flexstage.analysis.workspace.drive import drive
 from flexstage.analysis.workspace.gauging import _pseudo_inverse
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
-from flexstage.analysis.workspace.small import small_motion
+from flexstage.analysis.workspace.small import SmallMotion, small_motion
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
 from flexstage.cases.double_triangle import double_triangle
@@ -373,3 +373,11 @@ def test_the_faces_of_a_deep_notch_touch_first():
     assert found.limit[place] == pytest.approx(2.0 * np.arctan(1.0 / 20.1))
     assert found.closes[place]
     assert found.limit[found.names.index("rod")] == pytest.approx(np.sqrt(0.02))
+
+
+def test_a_part_that_turns_shortens_like_an_arc() -> None:
+    """Chord of an arc of 0.1 m that turns by 0.01 rad: L (1 - sin(a/2)/(a/2))."""
+    one = np.ones((1, 1))
+    moved = SmallMotion(("rz",), ("rod",), turn=0.01 * one, bend=0.0 * one, limit=np.ones(1), closes=(False,), span=np.array([0.1]))
+    found = moved.second_order({"rz": 1.0})
+    assert (found.shortened, found.shortening) == ("rod", pytest.approx(0.1 * (1.0 - np.sin(0.005) / 0.005), rel=1e-4))

@@ -10,6 +10,8 @@ import pytest
 import flexstage as fs
 from flexstage.base.finding import DesignError
 from flexstage.experiment import Amplifier, AntiAlias, InputQuantity, NoiseDrive, RigSetup, Sensing
+from flexstage.experiment.virtual_rig.chain import chain
+from flexstage.experiment.virtual_rig.checks import range_findings
 from flexstage.experiment.virtual_rig.plan import plan_test, volts_per_metre
 from flexstage.mechanism.mechanism import ModalDamping
 from flexstage.models.mapped import mapped
@@ -83,3 +85,15 @@ def test_stacks_without_voltage_or_capacitance_are_named() -> None:
     assert "B6: its stack has no capacitance" in told(replace(SOUND, amplifier=Amplifier(resistance=10.0)), stage)
     assert np.isnan(volts_per_metre(next(part for part in parts.values() if isinstance(part, fs.Piezo))))
     assert plan_test(stage, mapped(stage), SOUND).length == 20_480
+
+
+@pytest.mark.parametrize(("seconds", "told"), [(15.0, True), (240.0, False)])
+def test_drift_fills_a_range_with_the_root_of_time(seconds: float, told: bool) -> None:
+    """A walk of w per root of a minute is w sqrt(T / 60 s) after T: six times as much is compared with half of the range."""
+    stage = fs.case("double-triangle")
+    model = mapped(stage)
+    plan = plan_test(stage, model, RigSetup(seconds=seconds, drive=NoiseDrive(stroke=1e-9, actuators=("B1",))))
+    edge = 0.5 * plan.ranges / 6.0 / np.sqrt(seconds / 60.0)
+    plan = replace(plan, walks=(1.1 if told else 0.9) * edge)
+    found = [each for each in range_findings(plan, chain(model, plan, model.damping)) if "exceed half of its range" in each.what]
+    assert len(found) == (len(plan.gauges) if told else 0)

@@ -34,6 +34,12 @@ STAGE = case("parallelogram")
 MODEL = lumped(STAGE)
 
 
+def test_complex_values_have_a_column_for_each_part() -> None:
+    (sheet,) = (part for path, part in parts({"modes": [{"residue": 3.0 - 4.0j}, {"residue": 1.0j}]}) if path == "modes")
+    assert isinstance(sheet, Sheet)
+    assert sheet.heads == {"mode": (1, 2), "residue_real": (3.0, 0.0), "residue_imaginary": (-4.0, 1.0)}
+
+
 @pytest.fixture(scope="module")
 def lost() -> LostMotion:
     return lost_motion(ideal(STAGE), MODEL)
