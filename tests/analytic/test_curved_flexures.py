@@ -94,7 +94,7 @@ def test_a_wide_leaf_that_is_warm_on_one_side_curves_both_ways() -> None:
     assert 1.001 < moment / (-curvature * 0.1 * 5e-3**3 / 12.0) < 1.0 / (1.0 - 0.3)
     along = 6.0 * moment / (0.1 * 5e-3**2)
     over = 0.5 * 1e-3 * 5e-5 + 0.3 * along  # a clamp keeps the section straight: E alpha dT / 2 and what bending adds
-    np.testing.assert_allclose(strains(clamped).stress, np.sqrt(along**2 + over**2 - along * over), rtol=0.03)  # widths curve by 2 %
+    np.testing.assert_allclose(strains(clamped).stress, np.sqrt(along**2 + over**2 - along * over), rtol=0.03)
 
 
 @pytest.mark.parametrize(
