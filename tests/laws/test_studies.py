@@ -144,13 +144,13 @@ def test_a_study_warns_from_one_per_cent_of_stiffness(tmp_path: Path, most: floa
 
 def test_a_study_warns_of_the_corner_of_its_ranges_with_the_least_load_factor(tmp_path: Path):
     """A heavier platform on softer leaves: less than any single end, named with both values."""
-    mass = 'variables.mass = { address = "bodies.platform.mass", from = "0.15 kg", to = "0.3 kg", levels = 2 }\n'
-    young = 'variables.young = { address = "materials.steel.young", from = "100 GPa", to = "200 GPa", levels = 2 }'
+    mass = 'variables.mass = { address = "bodies.platform.mass", from = "1 kg", to = "4 kg", levels = 2 }\n'
+    young = 'variables.young = { address = "materials.steel.young", from = "150 GPa", to = "250 GPa", levels = 2 }'
     study = upright(tmp_path, 'responses.k = "stiffness.x"', mass + young)
     (finding,) = loaded_findings(study)
-    corner = load_factors(apply(study.design, study.variables, np.array([0.3, 100e9])))
+    corner = load_factors(apply(study.design, study.variables, np.array([4.0, 150e9])))
     assert corner is not None
-    assert f"smallest load factor {float(corner.worst):.3g} (mass 0.3 kg, young 100 GPa)" in finding.what
+    assert f"smallest load factor {float(corner.worst):.3g} (mass 4 kg, young 150 GPa)" in finding.what
 
 
 def test_variables_reach_the_numbers_they_name():
