@@ -34,6 +34,7 @@ from flexstage.show.table import Column, Mark, Table, make_table, record_table, 
 from flexstage.show.tables.description import value_tables
 from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.overview import axis_table
 from flexstage.show.tables.response import response_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
 from flexstage.spatial.frame import COMPONENTS
@@ -199,6 +200,15 @@ def test_rounding_noise_of_the_linear_map_is_shown_as_nothing(name: str, moved: 
     rows = {row[0]: row[1:] for row in table.texts()[1:]}
     assert [axis for axis in rows if rows[axis] != ["0", *"-" * len(found.actuators)]] == moved
     assert any("0: within the rounding error" in text for text in table.notes) == (len(moved) < 6)
+
+
+def test_strokes_of_the_summary_are_those_with_corrected_lost_motion() -> None:
+    analysis = analysed("double-triangle")
+    found, plain = analysis.workspace.corrected, analysis.workspace.single_axis
+    rows = {row[0]: row[1] for row in axis_table(analysis).texts()[1:]}
+    for name, stroke, ideal_stroke in zip(found.coordinates, found.symmetric, plain.symmetric, strict=True):
+        assert stroke != pytest.approx(ideal_stroke, rel=5e-3)
+        assert rows[name] == f"+-{1e6 * stroke:.4g} {'urad' if name.startswith('r') else 'um'}"
 
 
 def test_only_a_stated_opening_is_spoken_of() -> None:
