@@ -324,6 +324,7 @@ def test_one_sweep_is_taken_whole(method: str) -> None:
     np.testing.assert_allclose(found.frequencies, frequencies, rtol=1e-4)
     np.testing.assert_allclose(found.damping, ratios, rtol=1e-2)
     assert np.all(np.abs(found.frequencies - frequencies) < 4.0 * found.frequency_deviations)
+    np.testing.assert_allclose(found.noise, 2.0 * (1e-4 * np.std(moved, axis=0)) ** 2 / rate, rtol=0.3)  # one-sided: 2 sigma^2 / rate
 
 
 def test_intervals_of_records_hold_as_often_as_they_state() -> None:

@@ -15,7 +15,7 @@ from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, pair_modes
 from flexstage.analysis.linear_statics.units import units
 from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.drawn import with_drawn_parts
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import Force, Mechanism
 from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.jobs.cache import Cache
 from flexstage.solid.fea.jobs.hinge_cache import HingeJob
@@ -120,6 +120,10 @@ def test_the_worst_corner_is_over_all_strokes() -> None:
     assert nominal is not None
     at = nominal.links.index("left")
     assert stage.stress.at("left") == pytest.approx(float(nominal.peak[at]), rel=0.5)
+    pulled = replace(small(), forces={"pull": Force("platform", (0.0, 0.0, 0.0), (40.0, 0.0, 0.0))})
+    loaded, hand = solid_stage(pulled, OF_SMALL).stress, fs.analyse(pulled).workspace.stress
+    back = hand.links.index("B/back")  # by hand 15 instead of 4 MPa: the corners have the permanent load
+    assert loaded.at("B/back") > 0.6 * hand.peak[back] / nominal.peak[back] * stage.stress.at("B/back")
 
 
 def test_pictures_show_the_motion() -> None:
