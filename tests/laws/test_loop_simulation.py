@@ -134,6 +134,23 @@ def one_axis(tracking_time: float, current: float = 1.0) -> Machine:
     return replace(found, resolution=np.zeros(1), amplifiers=replace(found.amplifiers, high=np.full(1, 10e-6), low=np.full(1, -10e-6)))
 
 
+def test_overshoot_is_beyond_the_step_not_ahead_of_the_reference():
+    """A motion ahead of a slow reference has not passed the end of the step; one that first goes backwards undershoots."""
+    reference = np.linspace(0.0, 1e-6, 11)[:, None]
+    found = simulate(replace(one_axis(1e9), resolution=np.zeros(1)), reference)
+    place = [channel.name for channel in found.channels].index("relative.x")
+
+    def moved(true: np.ndarray) -> tuple[float, float]:
+        motions = found.motions.copy()
+        motions[:, place] = true
+        seen = step_figures(replace(found, motions=motions))
+        return float(seen.overshoot[0]), float(seen.undershoot[0])
+
+    assert moved(np.minimum(reference[:, 0] + 0.3e-6, 1e-6)) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert moved(np.where(np.arange(11) == 1, -0.2e-6, reference[:, 0])) == pytest.approx((0.0, 0.2), abs=1e-12)
+    assert moved(1.1 * reference[:, 0]) == pytest.approx((0.1, 0.0), abs=1e-12)
+
+
 def test_anti_windup_recovers():
     """Asked for twice the stroke, then for half of it: with back-calculation the loop turns back at once, without it stays at its end."""
     times = 1e-4 * np.arange(4000)

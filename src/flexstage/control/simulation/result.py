@@ -205,8 +205,7 @@ def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0) -
     outside = np.abs(error) > band
     last = len(error) - np.argmax(outside[::-1], axis=0)
     times = np.append(found.times, np.inf)[np.where(np.any(outside, axis=0), last, 0)]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        beyond = np.where(step != 0.0, -error / step, np.nan)
+    beyond = (found.reference - error) / np.where(step != 0.0, step, np.nan) - 1.0
     moved = found.times >= start
     return StepFigures(
         coordinates=found.coordinates,
