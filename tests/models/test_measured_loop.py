@@ -14,7 +14,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.noise import noise_budget
 from flexstage.control.plant_models.electronics import sampling_chain
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.robustness.measured_margins import MeasuredMargins, measured_margins
+from flexstage.control.robustness.measured_margins import MeasuredMargins, _ends, measured_margins
 from flexstage.control.robustness.stability_margins import bandwidths, peaks
 from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.run import simulate
@@ -174,6 +174,12 @@ def test_intervals_of_margins_hold_the_truth_and_are_no_wider_than_errors_are() 
         half = 0.5 * np.mean([each.high - each.low for each in rows])
         spread = np.std([each.value for each in rows], ddof=1)
         assert 0.85 < half / (1.96 * spread) < 1.45
+
+
+def test_a_margin_without_limit_has_no_interval_if_its_draws_have_limits() -> None:
+    """No limit was measured, but all draws have one: an interval from infinity to infinity would claim that there is none."""
+    assert np.all(np.isnan(_ends(np.inf, np.linspace(4.0, 6.0, 100))))
+    assert _ends(5.0, np.linspace(4.0, 6.0, 101)) == pytest.approx((4.04, 5.96), abs=0.02)
 
 
 def test_responses_of_records_are_as_far_off_as_they_say_at_resonances_too() -> None:

@@ -171,7 +171,7 @@ def _ends(value: float, drawn: Array) -> tuple[float, float]:
     Bootstrap Methods and their Application, 1997, ch. 5).
     """
     low, middle, high = np.quantile(drawn, (_ENDS[0], 0.5, _ENDS[1]), method="nearest")
-    if not (np.isfinite(low) and np.isfinite(middle)):
+    if not np.all(np.isfinite([value, low, middle])):
         return float("nan"), float("nan")
     further = 2.0 * value - high if np.isfinite(high) else np.inf
     return float(min(value + low - middle, further)), float(max(value + high - middle, 2.0 * value - low))
