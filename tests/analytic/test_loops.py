@@ -76,6 +76,12 @@ def test_a_loop_that_neither_grows_nor_decays_is_not_stable():
     assert np.isnan(found.gain_low)
 
 
+def test_gain_limits_are_found_up_to_a_factor_of_a_thousand():
+    """s^3 + 2 s^2 + s + k is stable for k < 2: from a gain of 2/990, or of 990 with a zero at the limit below, the limit is in reach."""
+    found = verdict(_closed([2.0 / 990.0], [1.0, 2.0, 1.0, 0.0]))
+    assert found.gain_high == pytest.approx(990.0, rel=1e-9)
+
+
 def test_skewed_disks():
     """With skew 1 the disk margin is 1/||S||, with -1 it is 1/||T|| (the same paper): the peaks of S and T."""
     closed = _closed([25.0], [1.0, 10.0, 10.0, 10.0])

@@ -108,7 +108,7 @@ def _is_stable(closed: Loop, least: Pole) -> bool:
 def _interval(closed: Loop, *, stable: bool) -> tuple[float, float]:
     """Command factors between which the loop is stable."""
     open_loop = open_at(closed, LoopBreak.COMMAND)
-    start, up, down = 1.0, int(np.log(_FARTHEST) / np.log(_UP)), int(-np.log(_FARTHEST) / np.log(_DOWN))
+    start, up, down = 1.0, round(np.log(_FARTHEST) / np.log(_UP)), round(-np.log(_FARTHEST) / np.log(_DOWN))
     if not stable:
         found = [factor for factor in _UP ** -np.arange(1.0, up + 1) if _growth(open_loop, factor) < 0.0][:1]
         if not found:
