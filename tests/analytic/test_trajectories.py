@@ -167,6 +167,18 @@ def test_what_the_strokes_do_not_reach_is_refused_with_numbers():
     assert not reach_findings(0.5 * asked, times, room)
 
 
+def test_strokes_that_start_at_an_end_are_told_with_numbers():
+    """A stack biased at its lowest voltage has no stroke downwards: a pose at rest needs none of it, a pose below needs infinitely more."""
+    span = StrokeLimits(("B",), np.zeros(1), np.array([1e-6]))
+    room = reachable(Matrix(np.eye(1), ("B",), ("x",), "1"), span)
+    times = np.array([0.0, 1.0])
+    (above,) = reach_findings(np.array([[0.0], [2e-6]]), times, room)
+    assert "at 1 s, x = 2 um needs 2 times the stroke" in above.what
+    (below,) = reach_findings(np.array([[0.0], [-1e-6]]), times, room)
+    assert "at 1 s, x = -1 um needs inf times the stroke" in below.what
+    assert below.advice.startswith("Multiply the trajectory by 0,")
+
+
 def test_speed_is_compared_with_the_amplifiers():
     times = np.linspace(0.0, 1.0, 20_001)
     asked = reference(Sine({"x": 1e-6}, 10.0), ("x",), times)

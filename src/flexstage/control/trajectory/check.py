@@ -26,7 +26,8 @@ def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Findi
     outside = np.flatnonzero(~polytope.contains(poses))
     if not len(outside):
         return []
-    share = np.max(poses @ polytope.normals.T / polytope.offsets, axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.nanmax(poses @ polytope.normals.T / (polytope.offsets + 0.0), axis=-1)  # -0 becomes 0
     worst = int(np.argmax(share))
     pose = ", ".join(f"{name} = {_show(value, name)}" for name, value in zip(polytope.coordinates, poses[worst], strict=True) if value)
     what = f"beyond the strokes from {times[outside[0]]:g} s on; at {times[worst]:g} s, {pose} needs {share[worst]:.3g} times the stroke"
