@@ -329,6 +329,14 @@ def test_a_computers_delay_and_hold_are_those_of_one_and_a_half_samples():
     np.testing.assert_allclose(np.divide(off[:-1], off[1:]), 4.0, rtol=0.15)
 
 
+def test_lost_stiffness_is_told_relative_to_the_stiffness_without_feedback():
+    """The fraction is one of dynamic stiffnesses at the same frequency, not one of the static stiffness."""
+    study = loop_study(case("parallelogram"), LoopSetup(controller=ControllerSetup(integral=300.0), damping=DampingSetup(ratio=0.3)))
+    (told,) = [each.what for each in study.warnings if "stiffness" in each.what]
+    share = f"{100.0 * study.damping.softest[0]:.3g} %"
+    assert told == f"force feedback reduces the platform's dynamic stiffness to {share} along x, at {study.damping.softest_at[0]:.3g} Hz"
+
+
 def test_damping_that_is_not_reached_is_said():
     """At the rate of the loop itself, delay and hold turn a mode at a sixth of it by 90 degrees: nothing is left to damp it."""
     for rate, reached in ((None, 0.3), (10e3, 0.01)):

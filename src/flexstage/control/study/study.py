@@ -299,7 +299,7 @@ def _warnings(given: ResolvedSetup) -> list[Finding]:
     if given.damping is not None:
         yielding = given.damping
         worst = int(np.argmin(yielding.softest))
-        what = f"the platform's dynamic stiffness falls to {100.0 * yielding.softest[worst]:.3g} % of the static stiffness"
+        what = f"force feedback reduces the platform's dynamic stiffness to {100.0 * yielding.softest[worst]:.3g} %"
         advice = "The pose loop must supply the missing stiffness. For more stiffness, increase damping.corner or reduce damping.ratio"
         found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
         asked = None if given.setup.damping is None else given.setup.damping.ratio
