@@ -21,7 +21,7 @@ from flexstage.cases.registry import case
 from flexstage.control.plant_models.coordinates import coordinates
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
 from flexstage.control.show.playing import response_motions
-from flexstage.control.show.sections import margin_points, margin_spots, time_section
+from flexstage.control.show.sections import loop_section, margin_points, margin_spots, time_section
 from flexstage.control.show.tables import margin_tables, noise_table, static_error_tables, time_tables
 from flexstage.control.simulation.result import Excursion, other_motions
 from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
@@ -245,6 +245,14 @@ def test_loads_that_are_carried_take_of_the_strokes() -> None:
     assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
     with pytest.raises(DesignError, match="trajectory z: beyond the strokes from"):
         loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
+
+
+def test_the_crossover_of_a_loop_is_told_as_that_of_the_slowest() -> None:
+    """An optimised controller has another crossover in every loop; the lowest is shown."""
+    found = loop_study(parallelogram(), LoopSetup(controller=ControllerSetup(quick=True), seconds=0.05))
+    shown = loop_section(found)
+    assert shown is not None
+    assert "slowest loop" in str(shown)
 
 
 def test_the_same_seed_gives_the_same_noise() -> None:

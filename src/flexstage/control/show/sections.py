@@ -59,7 +59,7 @@ def _facts(found: LoopStudy) -> Iterator[Fact]:
         "stability", "stable" if found.stability.stable else "unstable", f"slowest decay rate {number(-found.growth_all_modes, 3)} 1/s"
     )
     if found.controller.tuning is not None:
-        yield Fact("gain crossover", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "all loops")
+        yield Fact("gain crossover", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "slowest loop")
     if found.peaks is not None:
         yield Fact("peak sensitivity Ms", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB or less is usual")
     settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
