@@ -25,9 +25,10 @@ from flexstage.control.show.sections import loop_section, margin_points, margin_
 from flexstage.control.show.tables import margin_tables, noise_table, static_error_tables, time_tables
 from flexstage.control.simulation.result import Excursion, other_motions
 from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
+from flexstage.control.study.control import make_controller
 from flexstage.control.study.course import courses, sampled_course
 from flexstage.control.study.resolve import default_rate, resolve
-from flexstage.control.study.runs import StepAnswer, rest_rms
+from flexstage.control.study.runs import StepAnswer, rest_rms, runs
 from flexstage.control.study.setup import (
     AmplifierSetup,
     AxisAmplitudes,
@@ -245,6 +246,20 @@ def test_loads_that_are_carried_take_of_the_strokes() -> None:
     assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
     with pytest.raises(DesignError, match="trajectory z: beyond the strokes from"):
         loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
+
+
+def test_fractions_at_limits_are_those_of_the_shown_samples() -> None:
+    """The noise starts before a trajectory, at rest within all limits: this time does not count."""
+    fast = SineMotion(amplitude=AxisAmplitudes(x=5e-6), frequency=100.0)
+    asked = LoopSetup(
+        controller=CALM, compensate=(Compensation.REFERENCE,), gauges=GaugeSetup(noise=1e-10), amplifier=AmplifierSetup(slew=2000.0)
+    )
+    given = resolve(parallelogram(), replace(asked, trajectory=fast))
+    control = make_controller(given, given.plant.coordinates.strokes)
+    (run,) = runs(given, control, loop(given.plant, control.system))
+    share = np.mean(run.simulated.given != run.simulated.asked)
+    assert share > 0.1
+    assert run.simulated.saturated + run.simulated.slewing == pytest.approx(share)
 
 
 def test_the_crossover_of_a_loop_is_told_as_that_of_the_slowest() -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.noise import noise_series
-from flexstage.control.simulation.result import Simulated
+from flexstage.control.simulation.result import Series, Simulated, simulation_result
 from flexstage.control.simulation.run import simulate
 from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.study.resolve import ResolvedSetup, round_up
@@ -57,7 +57,7 @@ class DisturbedLoop:
         if not series and not np.any(held):
             return simulate(self.machine, poses)
         before = np.zeros((lead, poses.shape[1])) + held
-        return part_of(simulate(self.machine, np.concatenate([before, poses]), series), slice(lead, None))
+        return part_of(self.machine, simulate(self.machine, np.concatenate([before, poses]), series), slice(lead, None))
 
     def begin(self, count: int) -> Callable[[Array], Array]:
         """Start a simulation of `count` samples; return a function that continues it with commanded poses and returns measured poses."""
@@ -75,8 +75,6 @@ class DisturbedLoop:
         return lead, {name: values * gentle if name.startswith("ground.") else values for name, values in noise.items()}
 
 
-def part_of(found: Simulated, part: slice) -> Simulated:
-    """Return the samples `part` of a simulation, timed from their start. Fractions of time at limits refer to the whole simulation."""
-    names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
-    kept = {name: getattr(found, name)[part] for name in names}
-    return replace(found, **(kept | {"times": found.times[part] - found.times[part.start]}))
+def part_of(given: Machine, found: Simulated, part: slice) -> Simulated:
+    """Return the samples `part` of a simulation, timed from their start. Fractions of time at limits refer to these samples."""
+    return simulation_result(given, Series(**{field.name: getattr(found, field.name)[part] for field in fields(Series)}))

@@ -48,7 +48,7 @@ def follow(
         shaper = (zv if asked.method is Following.ZV else zvd)(asked.frequency or 0.0, asked.damping)
         commanded = shaper.shape(wanted, step)
     whole = noisy.simulate(commanded, number)
-    seen = part_of(replace(whole, reference=wanted, error=wanted - whole.pose), window)
+    seen = part_of(noisy.machine, replace(whole, reference=wanted), window)
     return seen, {"commanded": commanded, "learned": learned, "repeated": repeated}
 
 
