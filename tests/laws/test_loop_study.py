@@ -28,7 +28,7 @@ from flexstage.control.study.choices import Axis, Compensation, ControllerKind, 
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.course import courses, sampled_course
 from flexstage.control.study.resolve import default_rate, resolve
-from flexstage.control.study.runs import StepAnswer, rest_rms, runs
+from flexstage.control.study.runs import StepAnswer, command_ends, rest_rms, runs
 from flexstage.control.study.setup import (
     AmplifierSetup,
     AxisAmplitudes,
@@ -246,6 +246,18 @@ def test_loads_that_are_carried_take_of_the_strokes() -> None:
     assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
     with pytest.raises(DesignError, match="trajectory z: beyond the strokes from"):
         loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
+
+
+def test_strokes_that_carry_loads_take_of_the_simulated_range() -> None:
+    """Voltages are counted from those of the load strokes, and a step ends where the stack ends."""
+    asked = LoopSetup(controller=CALM, trajectory=StepMotion(amplitude=AxisAmplitudes(x=1e-6)), seconds=0.05)
+    given = resolve(parallelogram(), asked)
+    control = make_controller(given, given.plant.coordinates.strokes)
+    high, gain = command_ends(given).high[0], drive(parallelogram()).gain[0]
+    (run,) = runs(given, control, loop(given.plant, control.system), None, np.array([high - 1.0001e-6]))
+    seen = run.simulated
+    assert seen.volts[0, 0] == pytest.approx(drive(parallelogram()).bias[0] + (high - 1.0001e-6 + seen.given[0, 0]) / gain)
+    assert np.max(seen.given) == pytest.approx(1.0001e-6, rel=1e-9)  # the integrator goes to the end
 
 
 def test_fractions_at_limits_are_those_of_the_shown_samples() -> None:

@@ -220,17 +220,18 @@ def runs(
     asked = courses(given.setup.trajectory, loop)
     rest = rest_time(closed, ringing=Compensation.REFERENCE in given.setup.compensate)
     sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _simulated_time(each, rest)) for each in asked]
-    known, units = command_ends(given), tuple(each.unit for each in loop.commands())
+    units = tuple(each.unit for each in loop.commands())
     gains = Matrix(control.gains, loop.actuators, loop.names, ratio_units(units, loop.units))
-    taken = np.zeros(len(known.actuators)) if offset is None else offset
-    limits = StrokeLimits(known.actuators, known.low - taken, known.high - taken)
+    computed, taken = driven_machine(given, control, stacks), 0.0 if offset is None else offset
+    powers = computed.amplifiers
+    powers = replace(powers, low=powers.low - taken, high=powers.high - taken, bias=powers.bias + taken / powers.gain)
+    computed, limits = replace(computed, amplifiers=powers), StrokeLimits(loop.actuators, powers.low, powers.high)
     require(
         finding
         for course, (times, poses) in zip(asked, sampled, strict=True)
         for finding in course_findings(course, poses, times, gains, limits)
     )
-    computed = driven_machine(given, control, stacks)
-    slew, noisy, found = computed.amplifiers.slew, DisturbedLoop(given, computed, rest), []
+    slew, noisy, found = powers.slew, DisturbedLoop(given, computed, rest), []
     for course, (times, poses) in zip(asked, sampled, strict=True):
         warnings = tuple(course_warnings(course, poses, times, gains, slew, units=units))
         taught = {}
