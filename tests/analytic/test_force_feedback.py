@@ -267,6 +267,19 @@ def test_both_loops_are_held_against_the_amplifiers_speed(size, held):
     assert any("the simulation does not apply these limits" in each.what for each in run.warnings) != held
 
 
+def test_a_stack_biased_at_an_end_uses_what_it_has_on_the_other_side():
+    """Without a stroke below the bias, the load of the amplifier is the largest stroke above it, although the stack starts at its limit."""
+    stage = loads(dumps(case("parallelogram")).replace('bias = "50 V"', 'bias = "-20 V"'))
+    smooth = StepMotion(amplitude=AxisAmplitudes(x=1e-6), speed=1e-3, acceleration=1.0, jerk=1e3)
+    asked = LoopSetup(controller=ControllerSetup(integral=600.0), damping=DampingSetup(ratio=0.4), trajectory=smooth, seconds=0.02)
+    given = resolve(stage, asked)
+    (run,) = runs(given, make_controller(given, given.plant.coordinates.strokes), loop(given.plant, integral(given.plant, 600.0)))
+    both = run.simulated.given[:, 0] + run.simulated.motion("added.B")
+    assert both[0] == 0.0
+    assert run.legs["B"].largest == pytest.approx(np.max(both))
+    assert run.legs["B"].stroke_share == pytest.approx(np.max(both) / 38e-6)
+
+
 LIMITED = {
     "ppf": AmplifierSetup(slew=1800.0),
     "pvf": AmplifierSetup(current=3e-3),

@@ -273,8 +273,9 @@ def _with_legs(run: Run, computed: Machine) -> Run:
             continue
         added = seen.motions[:, channels.index(f"{ADDED}.{name}")]
         both = seen.given[:, number] + added
-        place = int(np.argmax(np.maximum(both / powers.high[number], both / powers.low[number])))
-        reach = abs(float(powers.high[number] if both[place] > 0.0 else powers.low[number]))
+        high, low = max(powers.high[number], _ROUNDING), min(powers.low[number], -_ROUNDING)
+        place = int(np.argmax(np.maximum(both / high, both / low)))
+        reach = abs(float(high if both[place] > 0.0 else low))
         fastest = float(np.max(np.abs(np.diff(both)), initial=0.0)) / computed.step
         used[name] = LegUse(float(np.max(np.abs(added))), abs(float(both[place])), reach, fastest, float(powers.slew[number]))
         if not used[name].is_held:
