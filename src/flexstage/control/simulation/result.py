@@ -22,12 +22,13 @@ from flexstage.spatial.frame import COMPONENTS
 class Simulated(InNotebook):
     """Simulated loop over time: every series has a row per sample, `times` (n,) [s].
 
-    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] have a column for each of `coordinates`. The true `motions` (n, p) have a
-    column for each of `channels`. Four series (n, m) [m] contain strokes from the bias, with a column for each of `actuators`. `command` is
-    the controller's output, `asked` the amplifier input (after inverse model and converter), `given` the amplifier output (after limits),
-    and `stroke` the stroke at the stage. `volts` (n, m) are NaN for a stack without voltage data. `readings` (n, g) have a column for each
-    of `gauges`, in its unit. `saturated` (m,) is the fraction of samples at a range limit, `slewing` (m,) the fraction at a speed limit
-    only. `out_of_range` (g,) is the fraction of samples with a reading out of range or lost; the last valid reading then replaces it.
+    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] have a column for each of `coordinates`. The true `motions` (n, p) have
+    a column for each of `channels`. Four series (n, m) [m] contain strokes from the bias (with load feedforward: from its strokes),
+    with a column for each of `actuators`. `command` is the controller's output, `asked` the amplifier input (after inverse model and
+    converter), `given` the amplifier output (after limits), and `stroke` the stroke at the stage. `volts` (n, m) are NaN for a stack
+    without voltage data. `readings` (n, g) have a column for each of `gauges`, in its unit. `saturated` (m,) is the fraction of samples
+    at a range limit, `slewing` (m,) the fraction at a speed limit only. `out_of_range` (g,) is the fraction of samples with a reading
+    out of range or lost; the last valid reading then replaces it.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
