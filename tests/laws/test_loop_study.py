@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from flexstage.cases.registry import case
 from flexstage.control.plant_models.coordinates import coordinates
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
 from flexstage.control.show.playing import response_motions
+from flexstage.control.show.sections import _sampler as sampler_text
 from flexstage.control.show.sections import loop_section, margin_points, margin_spots, time_section
 from flexstage.control.show.tables import margin_tables, noise_table, static_error_tables, time_tables
 from flexstage.control.simulation.result import Excursion, other_motions
@@ -272,6 +274,14 @@ def test_fractions_at_limits_are_those_of_the_shown_samples() -> None:
     share = np.mean(run.simulated.given != run.simulated.asked)
     assert share > 0.1
     assert run.simulated.saturated + run.simulated.slewing == pytest.approx(share)
+
+
+def test_steps_of_angular_gauges_are_angles() -> None:
+    """A reading in radians is rounded to steps in radians, also in the block diagram."""
+    given = resolve(parallelogram(), LoopSetup(controller=CALM, gauges=GaugeSetup(resolution=5e-10)))
+    turned = replace(given.plant, coordinates=replace(given.plant.coordinates, gauge_units=("rad",)))
+    told = [sampler_text(SimpleNamespace(plant=each), "10 kHz") for each in (given.plant, turned)]  # type: ignore[arg-type]
+    assert told == ["10 kHz\nsteps 500 pm", "10 kHz\nsteps 0.5 nrad"]
 
 
 def test_the_crossover_of_a_loop_is_told_as_that_of_the_slowest() -> None:

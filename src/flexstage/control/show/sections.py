@@ -46,8 +46,8 @@ def headline(found: LoopStudy) -> Headline:
     if found.margins is None:
         return Headline("Open loop.")
     stable = found.stability.stable
-    phases = {each.channel: float(np.rad2deg(each.phase.value)) for each in found.margins.channels}
-    least = min(phases, key=lambda name: phases[name])
+    phases = {each.channel: np.rad2deg(each.phase.value) for each in found.margins.channels}
+    least = min(phases, key=phases.__getitem__)
     return Headline(
         f"The loop is {'stable' if stable else 'unstable'}; the smallest phase margin is {number(phases[least], 3)} deg, of loop {least}.",
         stable,
@@ -64,7 +64,7 @@ def _facts(found: LoopStudy) -> Iterator[Fact]:
         yield Fact("peak sensitivity Ms", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB or less is usual")
     settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
     if settled:
-        slowest = float(np.max(settled))
+        slowest = max(settled)
         shown = f"{number(1e3 * slowest, 3)} ms" if np.isfinite(slowest) else "not settled"
         yield Fact("settling time (2 %)", shown, "of the slowest step")
     for test in found.runs:
@@ -137,8 +137,9 @@ def _filters(found: LoopStudy) -> Iterator[Box]:
 
 
 def _sampler(found: LoopStudy, rate: str) -> str:
-    steps = {each.resolution for each in found.plant.hardware.sensors.values() if each.resolution}
-    return f"{rate}\nsteps {format_value(max(steps), 'm', 3)}" if steps else rate
+    plant = found.plant
+    step, unit = max((plant.hardware.sensors[each.name].resolution, each.unit) for each in plant.coordinates.readings())
+    return f"{rate}\nsteps {format_value(step, unit, 3)}" if step else rate
 
 
 def _bandwidth_text(items: tuple[Amplifier | Sensor, ...]) -> str:
@@ -208,10 +209,10 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
     for each in () if found.margins is None else found.margins.channels:
         for edge in (each.gain_low, each.gain_high):
             if 0.0 < edge.value < np.inf and edge.frequency > 0.0:  # zero frequency is not drawn
-                decibel = number(20.0 * float(np.log10(edge.value)), 3)
+                decibel = number(20.0 * np.log10(edge.value), 3)
                 yield Spot(edge.frequency, f"{each.channel}: gain margin {decibel} dB at {number(edge.frequency)} Hz", 1.0 / edge.value)
         if np.isfinite(each.phase.value):
-            turn = number(float(np.rad2deg(each.phase.value)), 3)
+            turn = number(np.rad2deg(each.phase.value), 3)
             yield Spot(each.phase.frequency, f"{each.channel}: phase margin {turn}° at {number(each.phase.frequency)} Hz", 1.0)
         if np.isfinite(each.delay.value) and np.isfinite(each.delay.frequency):
             later = number(1e3 * each.delay.value, 3)
