@@ -58,6 +58,16 @@ def test_the_front_is_what_no_other_beats_at_once():
     assert [row[0].text for row in shown.rows for cell in row[1:5] if cell.mark is Mark.PASS] == ["PI", "PI", "PID", "LQG"]
 
 
+def test_what_the_best_noise_is_is_told_where_the_worst_is_printed():
+    """The least noise on the whole may be the worst along one axis: 1 nm and 10 nrad beside 4 nm and 4 nrad."""
+    even = rival(rejection=300.0, noise=4e-9, settling=0.02, delay=1e-4)
+    found = Comparison({"pi": replace(even, noise=np.array([1e-9, 10e-9])), "pid": even}, {})
+    assert found.wins["noise"] == "pi"
+    shown = comparison_tables(found)[0]
+    assert shown is not None
+    assert any("The best noise is the lowest geometric mean of all coordinates." in note for note in shown.notes)
+
+
 def test_noise_that_nothing_makes_is_won_by_none():
     silent = rival(rejection=90.0, noise=0.0, settling=0.03, delay=1e-3)
     assert "noise" not in Comparison({"pi": silent}, {}).wins

@@ -271,7 +271,8 @@ def comparison_tables(found: Comparison) -> list[Table | None]:
     slow = [name for name, each in named.items() if each.slowly_rounding]
     notes = [
         *([f"Quantisation is counted as white noise, but is not white with {'; '.join(slow)}; see flexstage loop."] if slow else []),
-        f"Best in {best}. Pareto-optimal in crossover, noise, settling and delay margin: {'; '.join(map(kind_name, found.front))}.",
+        f"Best in {best}. The best noise is the lowest geometric mean of all coordinates.",
+        f"Pareto-optimal in crossover, noise, settling and delay margin: {'; '.join(map(kind_name, found.front))}.",
         *(f"{kind_name(name)} is not possible: {reason}" for name, reason in found.reasons.items()),
     ]
     table = result_table(named, notes=notes)
