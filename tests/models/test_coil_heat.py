@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from flexstage.cases.registry import case
+from flexstage.control.study.runs import CoilHeat
 from flexstage.control.study.setup import AxisAmplitudes, ControllerSetup, LoopSetup, SineMotion
 from flexstage.control.study.study import loop_study
 from flexstage.mechanism.assembly.expand import expand
@@ -13,6 +14,8 @@ def test_heat_is_that_of_the_simulated_current():
     stage = case("voice-coil-stage")
     path = SineMotion(frequency=20.0, periods=2.0, amplitude=AxisAmplitudes(x=50e-6))
     (run,) = loop_study(stage, LoopSetup(trajectory=path, controller=ControllerSetup(bandwidth=40.0))).runs
+    assert run.seconds > 1.01 * run.course.duration  # the mean includes the rest after the path, and the table says so
+    assert "with the simulated rest at its end" in CoilHeat.TABLE.notes[0]
     assembly = expand(stage)
     for number, name in enumerate(assembly.thrusts):
         part, found = assembly.actuator(name), run.heat[name]

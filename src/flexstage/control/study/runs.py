@@ -94,7 +94,7 @@ class CoilHeat:
         "Heat of force actuators",
         "rms held power warming",
         head="trajectory, actuator",
-        notes=("Each trajectory is repeated indefinitely. Cooling by the motion is neglected.",),
+        notes=("Each trajectory is repeated indefinitely, with the simulated rest at its end. Cooling by the motion is neglected.",),
     )
 
     rms: Annotated[float, UnitIn("unit"), Heading("rms input", digits=3)]
