@@ -19,6 +19,7 @@ from flexstage.control.hysteresis.models.inverse import inverse
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.models.scaled import Stacks, scale_to_stacks
 from flexstage.control.hysteresis.models.shape import major_loop
+from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.models.linear.model import Channel
 from tests.laws.preisach import preisach
 
@@ -159,6 +160,17 @@ def test_warnings_say_what_a_record_does_not_show():
     assert "no inner loops" in found.warnings[0].what
     assert "0 V to 1000 V is only 77% of the actuator's range" in found.warnings[1].what
     assert (found.branches, found.inner) == (4, 0)
+
+
+def test_the_width_is_told_relative_to_the_stroke_of_the_major_loop():
+    """If only the first branch covers the whole range, the stroke is that of the others: the width belongs to the larger stroke."""
+    legs = ((0, 1e3), (1e3, 170), (170, 1e3), (1e3, 200), (200, 800), (800, 170), (170, 600), (600, 170))
+    volts = np.concatenate([np.linspace(*leg, 60) for leg in legs])
+    found = identify_hysteresis(volts, bouc_wen(150e-6, (0.0, 1000.0), 0.15).run(volts))
+    whole = major_loop(found.model, found.range)
+    assert found.stroke < 0.85 * whole.stroke[0]
+    assert found.width == pytest.approx(whole.width[0], rel=0.01)
+    assert "the width to that of the major loop" in StackTest.TABLE.notes[0]
 
 
 def test_small_turns_are_noise():

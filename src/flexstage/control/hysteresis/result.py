@@ -51,11 +51,11 @@ class Plays:
 class IdentifiedHysteresis(InNotebook):
     """Hysteresis model identified from a record, with its accuracy.
 
-    Errors and the width are divided by `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are the rms error
-    and the largest error from sample `known_from` on; these samples do not depend on the unknown history. `validation` is the rms error on
-    parts of the record that were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the
-    recorded voltage range; `inner` is the number of branches shorter than 80 % of the recorded range. `volts`, `strokes` and `modelled`
-    (k,) are the samples used.
+    Errors and drift are divided by `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are the rms error and
+    the largest error from sample `known_from` on; these samples do not depend on the unknown history. `validation` is the rms error on
+    parts of the record that were not fitted. `width` is the largest distance between the branches of the model's major loop, divided by
+    that loop's stroke. `range` is the recorded voltage range; `inner` is the number of branches shorter than 80 % of the recorded range.
+    `volts`, `strokes` and `modelled` (k,) are the samples used.
     """
 
     model: Annotated[PrandtlIshlinskii, INNER]
