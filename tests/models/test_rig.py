@@ -263,6 +263,16 @@ def test_any_stretch_is_the_same_however_it_is_read() -> None:
     np.testing.assert_array_equal(np.concatenate(list(late.blocks(7_000))), whole.values)
 
 
+def test_a_drive_far_above_half_the_rate_gives_as_many_samples_as_asked() -> None:
+    """Blocks contain a power of two of samples: a sampling rate multiplied by three would not divide them."""
+    mechanism, model = stage()
+    test = simulate_test(mechanism, model, RigSetup(seconds=12.0, rate=1024.0, drive=NoiseDrive(stroke=1e-7, band=(0.0, 1000.0))))
+    whole = test.read(0, test.length)
+    assert test.length > test.block
+    assert len(whole) == test.length
+    np.testing.assert_array_equal(test.read(test.block + 7, test.block + 17), whole[test.block + 7 : test.block + 17])
+
+
 def test_records_go_on_over_the_ends_of_blocks() -> None:
     """A jump where blocks meet would be noise in the second differences of a smooth motion."""
     mechanism, model = stage()

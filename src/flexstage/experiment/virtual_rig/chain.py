@@ -27,7 +27,6 @@ _FORGOTTEN = 30.0
 """Time constants after which an impulse response is negligible: e^-30 is 1e-13."""
 _SPREAD = 15.0
 _STEEPNESS = 4.0
-_FINER = 2
 _SHORTEST, _LONGEST = 16_384, 2**23
 _LINES = 4096
 
@@ -87,12 +86,12 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
     >>> (1e6 * found.input_rms).round(3).tolist()  # 1.5 and 2 um, reduced by the filter
     [1.418, 1.418, 1.418, 1.89, 1.89, 1.89]
     """
-    finer = max(_FINER, int(np.ceil(2.0 * (1.0 + TAPER) * plan.band[1] / plan.rate)))
+    finer = 2 ** max(1, int(np.ceil(np.log2(2.0 * (1.0 + TAPER) * plan.band[1] / plan.rate))))  # a block of a power of two divides evenly
     rate = finer * plan.rate
     size = _block(_memory(model, plan, damping), rate)
     lines = np.arange(3 * size // 2 + 1) * (rate / (3 * size))
     shape = amplitude_shape(lines, plan.band)
-    used = lines[: int(np.flatnonzero(shape)[-1]) + 1]
+    used = lines[: np.flatnonzero(shape)[-1] + 1]
     unit = shape[: len(used)] / np.sqrt((2.0 * np.sum(shape**2) - shape[0] ** 2) / (3 * size))
     filtered = butterworth(used, plan.setup.filter.order, plan.corner)
     commands = unit[:, None] * plan.rms
