@@ -326,6 +326,6 @@ def _extent(record: Record, requirements: RecordRequirements, where: str) -> Ite
         advice = f'Request {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
         yield _fault(FaultTolerance.SHORT, where, "", what, advice)
     if highest is not None and record.rate <= 2.0 * highest:
-        what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {highest:g} Hz"
-        advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to identify only modes below {0.5 * record.rate:g} Hz'
+        what = f"it is sampled at {record.rate:g} Hz, at most twice the highest mode at {highest:g} Hz"
+        advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to identify only modes below {0.42 * record.rate:g} Hz'
         yield _fault(FaultTolerance.SLOW, where, "", what, advice)

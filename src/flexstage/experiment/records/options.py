@@ -51,7 +51,7 @@ class FaultTolerance(Enum):
     SHORT = "short"
     """Use a record that is short for the requested resolution."""
     SLOW = "slow"
-    """Use a record sampled too slowly for the highest mode, up to half its rate."""
+    """Use a record sampled too slowly for the highest mode, up to 0.42 times its rate."""
     NAMES = "names"
     """Omit channels without a role, or absent from the stage."""
     WINDOWED = "windowed"
