@@ -13,10 +13,12 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.experiment.example import one_mode_band, one_mode_record
 from flexstage.experiment.identification.confidence import deviations, misfits
+from flexstage.experiment.identification.evidence import evidence
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.jackknife import jackknife
 from flexstage.experiment.identification.likelihood import fit, noise
 from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role, in_memory
+from flexstage.experiment.spectral.cross_spectra import Window
 from tests.conftest import FULL
 from tests.models.identification_study import CASES, Trial, compared, trials
 from tests.models.synthetic_records import WIDE, binomial_limits, record, truth
@@ -147,6 +149,15 @@ def test_an_analysers_responses_give_the_same_modes():
     found = compared(known, identify(Responses(lines, *names, values)))
     assert np.max(np.abs(found.frequency)) < 5e-4
     assert np.max(np.abs(found.scores)) < 4.5
+
+
+@pytest.mark.parametrize("window", Window)
+def test_lines_of_a_window_are_as_correlated_as_its_samples(window: Window) -> None:
+    """By Parseval's theorem, the sum of squared correlations of lines is the mean fourth power over the squared mean square."""
+    lines = np.arange(1.0, 40.0)
+    stored = Responses(lines, (Channel("y"),), (Channel("u"),), np.ones((39, 1, 1), dtype=complex), window=window.value)
+    samples = window.samples(1024)
+    assert evidence(stored, None).inflation == pytest.approx(np.mean(samples**4) / np.mean(samples**2) ** 2, rel=3e-3)
 
 
 def test_fitted_responses_are_the_true_ones():

@@ -300,7 +300,7 @@ def _coherent_shape(known: Responses, cells: Cells) -> Array:
     return np.maximum(power[line, :, column].T, 1e-12 * np.max(power, axis=(0, 2))[:, None])
 
 
-_INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.74, Window.BLACKMAN: 2.66}
+_INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.82, Window.BLACKMAN: 2.35}
 """Sum over lines of the squared correlation of a window's lines: 1 + 2 (4/9 + 1/36) = 1.94 for Hann's."""
 
 
