@@ -160,6 +160,19 @@ def test_lines_of_a_window_are_as_correlated_as_its_samples(window: Window) -> N
     assert evidence(stored, None).inflation == pytest.approx(np.mean(samples**4) / np.mean(samples**2) ** 2, rel=3e-3)
 
 
+def test_noise_of_stored_responses_is_unknown_per_hertz() -> None:
+    """A record has a density of noise; responses only have errors, in another unit, and their lines may be averages of any length."""
+    lines = np.linspace(6.0, 14.0, 200)
+    made = one_mode_record()
+    known = identify(made)
+    motion = np.var(made.values[:, 1])
+    assert known.noise[0] == pytest.approx(0.05**2 * motion / (made.rate / 2.0), rel=0.2)
+    values = known.response(lines).values * (1.0 + 0.01 * np.random.default_rng(0).standard_normal((200, 1, 1)))
+    stored = identify(Responses(lines, known.outputs, known.inputs, values))
+    assert len(stored.frequencies) == 1
+    assert np.all(np.isnan(stored.noise))
+
+
 def test_fitted_responses_are_the_true_ones():
     known = truth()
     found = identify(record(known, 3, noise=0.01))

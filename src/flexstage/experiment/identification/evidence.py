@@ -262,7 +262,7 @@ def _of_responses(known: Responses) -> Evidence:
         input_scale=np.ones(count),
         output_scale=output_scale,
         density=density,
-        rate=2.0 * float(known.frequencies[-1]),
+        rate=np.nan,
         band=(float(max(known.frequencies[0], _LOWEST_LINES * steps[0])), float(known.frequencies[-1])),
         stored=True,
         unstated=not known.window,

@@ -69,9 +69,10 @@ class Identified(InNotebook):
     inflation factor of all standard deviations, above 1 if the residual near the mode exceeds noise or may contain a further mode.
     `significance` (k,) is the mode's chi-squared statistic, divided by the level that noise exceeds with a probability of 1e-9. `close`
     lists groups of modes closer than their half-widths: only the subspace of such a group can be compared, not its single modes. `noise`
-    (p,) is the noise density of the outputs, in the output's unit squared per Hz. `data_warnings` lists limits of the data. `peaks` are
-    peaks not confirmed as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, this H is
-    multiplied by e^{-j w delay}.
+    (p,) is the noise density of the outputs, in the output's unit squared per Hz; with floor excitation, it is their whole density. For an
+    analyser's responses and for free decays, it is unknown (NaN). `data_warnings` lists limits of the data. `peaks` are peaks not confirmed
+    as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, this H is multiplied by e^{-j
+    w delay}.
     """
 
     frequencies: Array
