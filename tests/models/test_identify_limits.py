@@ -8,13 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
 from flexstage.experiment import NoiseDrive, RigSetup, Sensing
+from flexstage.experiment.identification.diagnosis.peaks import Peak
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, identify
-from flexstage.experiment.records.record import Channel, InMemory, Record, Responses
+from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role, in_memory
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
 
@@ -180,6 +182,20 @@ def test_what_noise_hides_is_told_in_numbers() -> None:
     assert "narrower than the line spacing of 1.2 Hz" in identify(alone).data_warnings[0]
     assert "although inputs explain" not in identify(alone).data_warnings[0]
     assert "no mode can be identified, although inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).data_warnings[0]
+
+
+def test_a_mode_narrower_than_the_line_spacing_is_a_mode() -> None:
+    """The inputs excite it, which distinguishes it from a tone; only outputs alone require a width above the line spacing."""
+    random, rate, size = np.random.default_rng(0), 64.0, 4096
+    pole = np.exp(2.0 * np.pi * 10.0 * (-5e-4 + 1j) / rate)
+    drive = random.standard_normal(9 * size)
+    moved = scipy.signal.lfilter([0.0, pole.imag], [1.0, -2.0 * pole.real, abs(pole) ** 2], drive)[-size:]
+    values = np.stack([drive[-size:], moved + 0.02 * np.std(moved) * random.standard_normal(size)], axis=1)
+    found = identify(in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], rate, values))
+    assert len(found.frequencies) == 1
+    assert 2.0 * found.damping[0] * found.frequencies[0] < 0.8 * rate / size
+    (note,) = Peak.TABLE.notes
+    assert "under floor excitation, a width" in note
 
 
 @pytest.mark.parametrize("steps", [np.round, np.floor])

@@ -48,12 +48,12 @@ class PeakCause(Enum):
 
 @dataclass(frozen=True)
 class Peak:
-    """Peak at `frequency` in Hz, with a half-power `width` in Hz; the width is absent if it is at most one line.
+    """Peak at `frequency` in Hz, with a half-power `width` in Hz; tones, free oscillations and single lines have no width.
 
     `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
     peak without a mode. For a tone, it is the probability that noise is as pure; for a weak or narrow peak, that noise is as strong; for an
-    undriven peak, that inputs explain as much motion by chance. For an accepted mode, the probability is at most 1e-9, and the width
-    exceeds the line spacing.
+    undriven peak, that inputs explain as much motion by chance. For an accepted mode, the probability is at most 1e-9; under floor
+    excitation, the width is also at least the line spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -61,8 +61,8 @@ class Peak:
         "frequency outputs width resolution chance reason",
         notes=(
             (
-                "Probability: that of such a peak if there is no mode. A mode requires a probability of at most 1e-9, and a width above "
-                "the line spacing."
+                "Probability: that of such a peak if there is no mode. A mode requires a probability of at most 1e-9 and, under floor "
+                "excitation, a width of at least the line spacing."
             ),
         ),
     )
