@@ -19,6 +19,7 @@ from flexstage.experiment.updating.fit import Problem, gauss_newton
 from flexstage.experiment.updating.free import Prior, free
 from flexstage.experiment.updating.gains import _extrapolate_to_zero, measured_gains
 from flexstage.experiment.updating.rows import ModeRow, follow_modes, frequency_slopes, gain_slopes, mode_rows, start_design, static_gains
+from flexstage.experiment.updating.tables import residual_table
 from flexstage.experiment.updating.text import updated_text
 from flexstage.experiment.updating.update import Identifiability, Updated, update
 from flexstage.experiment.virtual_rig.inputs import InputQuantity
@@ -97,6 +98,11 @@ def test_from_static_gains_they_are() -> None:
     assert np.all(np.abs(errors(found, built)) < 1.96 * found.deviations)
     assert found.deviations[lever] < 0.015
     assert found.freedoms == 4 + 36
+    gain = next(each for each in found.residuals if each.unit != "Hz" and abs(each.measured) < 0.5 * each.scale)
+    assert gain.misfit_after == pytest.approx((gain.measured - gain.after) / (gain.deviation * gain.scale))
+    for count in (2, 14):  # the table says to what errors of gains are relative, however many it lists
+        notes = residual_table(replace(found, residuals=found.residuals[:4] + (gain,) * count)).notes
+        assert any("relative to the measured frequency, or to the largest measured gain of the actuator" in note for note in notes)
 
 
 @pytest.mark.full  # necks are found in a record always

@@ -27,7 +27,5 @@ def residual_table(found: Updated) -> Table | None:
     before, after = number(found.chi_square_before, 3), number(found.chi_square, 3)
     notes = [f"Chi-square of {found.freedoms} data: {before} before, {after} after (prior included), probability {found.probability:.2g}."]
     if len(gains) > _MOST_GAINS:
-        notes.append(
-            f"The {_MOST_GAINS} of {len(gains)} gains with the largest misfit; errors are relative to the actuator's largest gain."
-        )
+        notes.append(f"The {_MOST_GAINS} of {len(gains)} gains with the largest initial misfit.")
     return result_table([*modes, *gains[:_MOST_GAINS]], notes=notes)

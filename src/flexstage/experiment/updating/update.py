@@ -76,7 +76,10 @@ class Residual:
     TABLE: ClassVar[Layout] = Layout(
         "Theory and test",
         "name measured before after deviation misfit_before misfit_after",
-        notes=("Misfits: measured value minus theory, in standard deviations.",),
+        notes=(
+            "Misfits: measured value minus theory, in standard deviations.",
+            "Errors are relative to the measured frequency, or to the largest measured gain of the actuator.",
+        ),
     )
 
     name: Annotated[str, Heading("datum")]
