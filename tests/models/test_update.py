@@ -275,6 +275,9 @@ def test_gains_need_units_actuators_and_low_lines() -> None:
     bare = tuple(Channel(channel.name, "", channel.role) for channel in experiment.inputs)
     with pytest.raises(DesignError, match="does not fit a gauge or an actuator"):
         update(STAGE, replace(experiment, inputs=bare), [LEVER], known)
+    turned = (replace(experiment.outputs[0], unit="mrad"), *experiment.outputs[1:])  # a displacement gauge does not read an angle
+    with pytest.raises(DesignError, match='S1: its unit "mrad" does not fit'):
+        update(STAGE, replace(experiment, outputs=turned), [LEVER], known)
     named = tuple(replace(channel, name=f"u{channel.name}") for channel in experiment.inputs)
     with pytest.raises(DesignError, match="no input of the record has the name of an actuator"):
         update(STAGE, replace(experiment, inputs=named), [LEVER], known)

@@ -25,7 +25,7 @@ _SKIPPED = 2
 _FEWEST = 8
 _NEIGHBOURS = 1.94
 """Lines per independent one: Hann's neighbours share (2/3)^2 and (1/6)^2 of their variance on either side."""
-_LENGTH, _ANGLE, _VOLTAGE = dimension_of("m"), dimension_of("rad"), dimension_of("V")
+_VOLTAGE = dimension_of("V")
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,14 +68,14 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
         if not inputs
     )
     channels = {channel.name: channel for channel in (*experiment.inputs, *experiment.outputs)}
-    sizes = {name: si_size(mechanism, channels[name]) for name in (*inputs, *outputs)}
+    si = {channel.name: channel.unit for channel in (*model.outputs, *model.inputs)}
+    sizes = {name: si_size(mechanism, channels[name], si[name]) for name in (*inputs, *outputs)}
     require(_unit_findings([channels[name] for name, size in sizes.items() if not np.isfinite(size)]))
     rows = [[each.name for each in experiment.responses.outputs].index(name) for name in outputs]
     columns = [[each.name for each in experiment.responses.inputs].index(name) for name in inputs]
     lines, values = _low_lines(experiment)
     fitted, deviations = _extrapolate_to_zero(lines, np.real(values[:, rows][:, :, columns]))
     scale = np.array([sizes[name] for name in outputs])[:, None] / np.array([sizes[name] for name in inputs])
-    si = {channel.name: channel.unit for channel in (*model.outputs, *model.inputs)}
     units = tuple(tuple(f"{si[row]}/{si[column]}" for column in inputs) for row in outputs)
     return Gains(outputs, inputs, fitted * scale, deviations * scale, units)
 
@@ -117,13 +117,13 @@ def is_voltage(unit: str) -> bool:
     return unit_problem(unit) is None and dimension_of(unit).powers == _VOLTAGE.powers
 
 
-def si_size(mechanism: Mechanism, channel: Channel) -> float:
-    """Return the factor from a channel's unit to the SI unit of its gauge reading or actuator input; NaN for other units."""
+def si_size(mechanism: Mechanism, channel: Channel, reading: str = "m") -> float:
+    """Return the factor from a channel's unit to the SI unit of its gauge `reading` or actuator input; NaN for other units."""
     if unit_problem(channel.unit) is not None:
         return float("nan")
     unit = dimension_of(channel.unit)
     if channel.name not in expand(mechanism).actuators:
-        return float(unit.size) if unit.powers in (_LENGTH.powers, _ANGLE.powers) else float("nan")
+        return float(unit.size) if unit.powers == dimension_of(reading).powers else float("nan")
     quantity = next((key for key, name in RECORDED_UNITS.items() if dimension_of(name).powers == unit.powers), None)
     if quantity is None:
         return float("nan")
