@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from typing import Any
@@ -13,6 +14,10 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.experiment.comparison import FurtherMode, compare
+from flexstage.experiment.example import one_mode_record
+from flexstage.experiment.identification.cluster import stabilisation
+from flexstage.experiment.identification.identify import identify
+from flexstage.experiment.identification.lscf import Poles
 from flexstage.experiment.pipeline import Identification, identification
 from flexstage.experiment.records.record import Channel, Responses, Role, in_memory
 from flexstage.experiment.show.comparison_figures import compare_figure
@@ -24,6 +29,7 @@ from flexstage.experiment.show.figures import (
     stabilisation_figure,
 )
 from flexstage.experiment.show.report import identify_report
+from flexstage.experiment.show.sections import coherence_section, response_data_section, stabilisation_section
 from flexstage.experiment.show.tables import identified_table, measured_shape_table
 from flexstage.experiment.spectral.cross_spectra import example_spectra
 from flexstage.experiment.spectral.transfer import h1
@@ -79,6 +85,27 @@ def test_coherence_is_the_one_of_the_spectra(seen: Identification) -> None:
         assert np.all(np.max(ordinary, axis=0) <= multiple + 1e-9)
         # Inputs are independent: their shares add up to the whole, each with the share that noise has by chance.
         assert np.mean(np.sum(ordinary, axis=0)) - np.mean(multiple) == pytest.approx(6.0 / seen.spectra.independent, abs=0.1)
+
+
+def test_captions_tell_that_only_six_outputs_are_drawn() -> None:
+    one = one_mode_record(seconds=16.0)
+    noise = 0.05 * np.random.default_rng(0).standard_normal((one.length, 8)) * np.std(one.values[:, 1])
+    channels = (one.channels[0], *(replace(one.channels[1], name=f"y{number}") for number in range(8)))
+    many = identification((in_memory(channels, one.rate, np.hstack([one.values[:, :1], one.values[:, 1:] + noise])),))
+    assert many.spectra is not None
+    assert len(coherence_figure(many.found, many.multiple, many.spectra.frequencies).axes) == 6
+    assert many.found.responses.frequencies[1] < many.spectra.frequencies[1]  # a second search has longer segments
+    assert "Segments of the multiple coherence: 0.6667 s" in str(coherence_section(many))
+    for drawn, count in ((coherence_section(many), 1), (response_data_section(many), 2)):
+        texts = re.findall(r"at most six|at most 6", str(drawn), re.IGNORECASE)
+        assert len(texts) == count
+
+
+def test_a_pole_is_compared_with_the_last_one_found_even_if_orders_between_have_none() -> None:
+    found = [Poles(order, np.array([-0.1 + 10j])[: order != 2], np.ones((int(order != 2), 1))) for order in (1, 2, 3)]
+    diagram, _ = stabilisation(tuple(found), 0.1)
+    assert diagram.stable.tolist() == [0, 3]
+    assert "one of a lower order" in str(stabilisation_section(identify(one_mode_record(seconds=16.0))))
 
 
 def test_every_mode_stands_in_the_stabilisation_diagram(seen: Identification) -> None:

@@ -28,7 +28,7 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Stabilisation:
-    """Stabilisation diagram: for every pole its order, frequency in Hz, damping ratio and stability relative to the order below.
+    """Stabilisation diagram: for every pole its order, frequency in Hz, damping ratio and stability relative to a lower order.
 
     `stable` is 0 for a new pole, 1 for a stable frequency (0.2 %), 2 for stable frequency and damping (5 %), and 3 if the
     participation is also stable (MAC of 0.98).

@@ -45,8 +45,9 @@ _FLOOR = (
 def found_section(seen: Identification) -> Section | None:
     """Make the section of identified modes, and of the limits of the data."""
     text = (
-        "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator, applied to H1. Each group "
-        "of close candidates is fitted by maximum likelihood to the transform of the whole record. Insignificant modes are omitted."
+        "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator, applied to the responses "
+        "(H1 for records). Each group of close candidates is fitted by maximum likelihood to the transforms of whole records, or to the "
+        "measured responses. Insignificant modes are omitted."
     )
     found = seen.found
     text = text if found.inputs else _FLOOR
@@ -66,9 +67,9 @@ def response_data_section(seen: Identification) -> Section | None:
     found = seen.found
     if not found.inputs:
         picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
-        return section("Densities", [Picture(picture, "Amplitude densities of the outputs. Dotted: modes found.")])
+        return section("Densities", [Picture(picture, "Amplitude densities of the outputs (at most six). Dotted: modes found.")])
     drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs: data and fit")
-    caption = "Responses: magnitude, and phase below it. Grey: data (H1); blue: fit. Columns are inputs, rows are outputs."
+    caption = "Responses: magnitude, and phase below it. Grey: data (H1 for records); blue: fit. Columns are inputs, rows are outputs."
     cut = max(len(found.outputs), len(found.inputs)) > LARGEST
     caption += f" At most {LARGEST} of {len(found.outputs)} outputs and {len(found.inputs)} inputs are shown." if cut else ""
     others = [each for each in (seen.second, seen.ratio) if each is not None]
@@ -76,8 +77,8 @@ def response_data_section(seen: Identification) -> Section | None:
     if others and seen.spectra is not None:
         picture = to_svg(estimator_figure(found.responses, others, focus(found)), "estimators", "Comparison of response estimates")
         text = (
-            "Response of each output to its dominant input. H1 assumes noise at outputs, H2 at inputs. G_ij/G_ii (Eq. 29 of Shin & "
-            "Moon) equals H1 for a single input and for uncorrelated inputs."
+            "Response of each output (at most six) to its dominant input. H1 assumes noise at outputs, H2 at inputs. G_ij/G_ii (Eq. 29 of "
+            "Shin & Moon) equals H1 for a single input and for uncorrelated inputs."
         )
         estimators = Picture(picture, text)
     return section("Responses", [Picture(drawn, caption), fold("H1, H2 and the ratio of Shin & Moon", estimators)])
@@ -93,9 +94,10 @@ def coherence_section(seen: Identification) -> Section | None:
     cut = ""
     if known is not None:
         window = known.segments.window.value.capitalize()
-        cut = f" Segments of {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
+        cut = f" Segments of the multiple coherence: {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
     caption = (
-        "Multiple coherence: fraction of output power that all inputs explain. Ordinary coherence: fraction that one input explains." + cut
+        "Multiple coherence: fraction of output power that all inputs explain. Ordinary coherence: fraction that one input explains. At "
+        "most six outputs and six inputs are shown." + cut
     )
     return section("Coherence", [Picture(drawn, caption)])
 
@@ -106,7 +108,7 @@ def stabilisation_section(found: Identified) -> Section | None:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
     caption = (
-        "Poles of models of increasing order. A pole is stable if it differs from one of the order below by less than 0.2 % in frequency "
+        "Poles of models of increasing order. A pole is stable if it differs from one of a lower order by less than 0.2 % in frequency "
         "and 5 % in damping, and if the MAC of their participations exceeds 0.98."
     )
     return section("Stabilisation", [Picture(drawn, caption)])
