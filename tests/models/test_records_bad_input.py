@@ -251,6 +251,37 @@ def test_times_that_are_none_are_told(tmp_path: Path) -> None:
     np.testing.assert_array_equal(kept(path, Options(rate=RATE)), VALUES)  # the rate that is stated holds
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "unit", "rate"),
+    [("rate", 2.0, "kHz", 2000.0), ("step", 2.0, "ms", 500.0), ("step", 0.5, "s", 2.0), ("rate", 2.0, "", 2.0), ("step", 2.0, "m", None)],
+)
+def test_a_rate_or_step_has_its_stated_unit(name: str, value: float, unit: str, rate: float | None, tmp_path: Path) -> None:
+    """A unit in the file counts: it is converted, or refused, but never ignored."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["samples"] = np.random.default_rng(0).standard_normal((64, 2))
+        file[name] = value
+        file[name].attrs["units"] = unit
+    if rate is None:
+        assert f'{name}: wrong unit (got "{unit}"' in refusal(tmp_path / "a.h5")
+    else:
+        found = read(tmp_path / "a.h5", Options())
+        assert isinstance(found, Record)
+        assert found.rate == rate
+
+
+@pytest.mark.parametrize(("unit", "highest"), [("kHz", 20_000.0), ("Hz", 20.0), ("rad/s", None)])
+def test_frequencies_have_their_stated_unit(unit: str, highest: float | None, tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["frequencies"], file["responses"] = np.linspace(1.0, 20.0, 20), np.ones((20, 1, 1), dtype=complex)
+        file["frequencies"].attrs["units"] = unit
+    if highest is None:
+        assert f'frequencies: wrong unit (got "{unit}"' in refusal(tmp_path / "a.h5")
+    else:
+        found = read(tmp_path / "a.h5", Options())
+        assert isinstance(found, Responses)
+        assert found.band[1] == highest
+
+
 def test_times_and_rate_that_disagree_are_told(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     scipy.io.savemat(path, {"time": np.arange(400) / RATE, "rate": 128.0, "samples": VALUES[:, 0]})

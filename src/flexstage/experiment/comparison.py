@@ -172,10 +172,11 @@ class Compared(InNotebook):
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on the analytical model and on the order of the finite elements."""
+        theory = f"Theory: {self.model.value} model."
         if self.fea is None:
-            return (f"Theory: {self.model.value} model.",)
+            return (theory,)
         error = "error estimated from a lower order" if self.fea.errors else "error not estimated: no coarser result"
-        return f"Theory: {self.model.value} model.", f"FEA: elements of order {self.fea.order}, {error}."
+        return theory, f"FEA: elements of order {self.fea.order}, {error}."
 
     @property
     def fea_order(self) -> Annotated[int | None, VIEW]:

@@ -25,6 +25,8 @@ from flexstage.experiment.records.unit import plain_unit
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
 """Format identifiers in files written by flexstage."""
 _LISTED = 24
+_SCALES = TIME_SCALES | {"Hz": 1.0, "kHz": 1e3}
+"""Factors of the units of times, steps, rates and frequencies to s and Hz."""
 _TIMED = "time = seconds({0}.Properties.RowTimes); samples = {0}.Variables; names = {0}.Properties.VariableNames"
 _SAVED = {
     "timeseries": "time = {0}.Time; samples = {0}.Data",
@@ -109,9 +111,22 @@ class Contents:
         >>> Contents("a.mat", (held_array("data.fs", np.array([[50.0]])),)).number("data.fs")
         50.0
         """
-        found: list[Attribute | None] = [float(np.real(each.whole().ravel()[0])) for each in self.find(names) if np.prod(each.shape) == 1]
+        found: list[Attribute | None] = [
+            float(np.real(each.whole().ravel()[0])) * self.scale(each) for each in self.find(names) if np.prod(each.shape) == 1
+        ]
         found += [self.said.get(name) for name in names]
         return next((value for value in found if isinstance(value, float)), None)
+
+    def scale(self, variable: Variable) -> float:
+        """Return the factor of a variable's unit to s or Hz; 1 without a unit."""
+        unit = plain_unit(" ".join(_texts(variable.attributes.get("units", "s"))) or "s")
+        if unit not in _SCALES:
+            raise refuse(
+                f"{self.where}: {variable.name}",
+                f'wrong unit (got "{unit}", expected s or Hz)',
+                "Use s, ms, us, Hz or kHz, or specify the rate (option rate)",
+            )
+        return _SCALES[unit]
 
     def texts(self, *names: str) -> tuple[str, ...]:
         """Return the list of strings with the first of these names that exists; empty if none exists."""
@@ -256,17 +271,14 @@ def _record(contents: Contents, chosen: tuple[Variable, ...], options: Options) 
 
 
 def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock:
-    step = contents.number(*options.arrays.step)
-    stated = options.rate or contents.number(*options.arrays.rate) or (1.0 / step if step else None)
+    stated = options.rate or contents.number(*options.arrays.rate) or 1.0 / (contents.number(*options.arrays.step) or np.inf) or None
     if time is None and stated is None:
         advice = 'Assign the time: "time=...", "rate=..." or "step=..." (option array), or specify the rate (option rate)'
         raise refuse(contents.where, f"no times and no rate. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
-    where, unit = f"{contents.where}: {time.name}", plain_unit(" ".join(_texts(time.attributes.get("units", "s"))) or "s")
-    if unit not in TIME_SCALES:
-        raise refuse(where, f'wrong unit (got "{unit}", expected a time)', "Use s, ms or us, or specify the rate (option rate)")
-    return determine_clock(time.samples(int(np.argmax(time.shape))), options, where, scale=TIME_SCALES[unit], stated=stated)
+    times = time.samples(int(np.argmax(time.shape)))
+    return determine_clock(times, options, f"{contents.where}: {time.name}", scale=contents.scale(time), stated=stated)
 
 
 def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | None, options: Options) -> list[tuple[Variable, int]]:
@@ -320,7 +332,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     lines = contents.vector(options.arrays.frequencies)
     if lines is None:
         raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign the frequencies (option array "frequencies=...")')
-    frequencies = lines.whole().ravel().astype(float)
+    frequencies = lines.whole().ravel() * contents.scale(lines)
     problem = rising_problem(frequencies)
     if problem is not None:
         raise refuse(f"{contents.where}: {lines.name}", problem, "Export each frequency once, from the lowest to the highest")

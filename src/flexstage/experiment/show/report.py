@@ -22,7 +22,7 @@ from flexstage.experiment.show.sections import (
     stabilisation_section,
 )
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.display import NO_VALUE, number, percent
+from flexstage.show.display import number, percent
 from flexstage.show.page import Head, Headline, Section, page
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import stage_section
@@ -76,7 +76,7 @@ def _compared_headline(found: Compared) -> Headline:
     if not seen:
         return Headline(f"{said}.", good=False)
     worst = max(seen, key=lambda mode: abs(mode.difference or 0.0))
-    off = NO_VALUE if worst.difference is None else percent(worst.difference, 3)
+    off = percent(worst.difference or 0.0, 3)
     return Headline(f"{said}; the largest error of theory is {off}, in mode {worst.number} ({worst.name}).", len(seen) == len(found.modes))
 
 

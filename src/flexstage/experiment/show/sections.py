@@ -88,9 +88,9 @@ def coherence_section(seen: Identification) -> Section | None:
     """Make the section of ordinary and multiple coherence; `None` without stored coherence."""
     if seen.found.responses.coherence is None and seen.multiple is None:
         return None
-    lines = None if seen.spectra is None else seen.spectra.frequencies
-    drawn = to_svg(coherence_figure(seen.found, seen.multiple, lines), "coherence", "Coherence of outputs with inputs over frequency")
     known = seen.spectra
+    lines = None if known is None else known.frequencies
+    drawn = to_svg(coherence_figure(seen.found, seen.multiple, lines), "coherence", "Coherence of outputs with inputs over frequency")
     cut = ""
     if known is not None:
         window = known.segments.window.value.capitalize()

@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.records.record import Channel
-from flexstage.experiment.records.unit import unit_problem
+from flexstage.experiment.records.unit import same_dimension, unit_problem
 from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantity
 from flexstage.experiment.virtual_rig.plan import drivable_actuators, input_factor
 from flexstage.mechanism.assembly.expand import expand
@@ -25,7 +25,6 @@ _SKIPPED = 2
 _FEWEST = 8
 _NEIGHBOURS = 1.94
 """Lines per independent one: Hann's neighbours share (2/3)^2 and (1/6)^2 of their variance on either side."""
-_VOLTAGE = dimension_of("V")
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,8 +103,14 @@ def _extrapolate_to_zero(lines: Array, values: Array) -> tuple[Array, Array]:
 
 
 def _unit_findings(channels: list[Channel]) -> list[Finding]:
-    advice = "Use the unit of a stroke, voltage, current or force for an input, of length or angle for a gauge, or compare without gains"
-    return [Finding(channel.name, f'its unit "{channel.unit}" does not fit a gauge or an actuator', advice) for channel in channels]
+    return [
+        Finding(
+            channel.name,
+            f'its unit "{channel.unit}" does not fit a gauge or an actuator',
+            "Use the unit of a stroke, voltage, current or force for an input, of length or angle for a gauge, or compare without gains",
+        )
+        for channel in channels
+    ]
 
 
 def is_voltage(unit: str) -> bool:
@@ -114,7 +119,7 @@ def is_voltage(unit: str) -> bool:
     >>> is_voltage("um"), is_voltage("mV"), is_voltage("")
     (False, True, False)
     """
-    return unit_problem(unit) is None and dimension_of(unit).powers == _VOLTAGE.powers
+    return unit_problem(unit) is None and same_dimension(unit, "V")
 
 
 def si_size(mechanism: Mechanism, channel: Channel, reading: str = "m") -> float:
@@ -123,8 +128,8 @@ def si_size(mechanism: Mechanism, channel: Channel, reading: str = "m") -> float
         return float("nan")
     unit = dimension_of(channel.unit)
     if channel.name not in expand(mechanism).actuators:
-        return float(unit.size) if unit.powers == dimension_of(reading).powers else float("nan")
-    quantity = next((key for key, name in RECORDED_UNITS.items() if dimension_of(name).powers == unit.powers), None)
+        return float(unit.size) if same_dimension(channel.unit, reading) else float("nan")
+    quantity = next((key for key, name in RECORDED_UNITS.items() if same_dimension(name, channel.unit)), None)
     if quantity is None:
         return float("nan")
     size = unit.size / dimension_of("m" if quantity is InputQuantity.STROKE else RECORDED_UNITS[quantity]).size

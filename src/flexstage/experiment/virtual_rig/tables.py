@@ -30,8 +30,8 @@ def rig_table(test: Simulated) -> Table:
     ]
     clock = f"{test.length} samples at {number(plan.rate, 6)} Hz"
     noise = f"noise from {number(plan.band[0], 4)} to {number(plan.band[1], 4)} Hz"
-    slower = [value for value in (*plan.bandwidths, *plan.lags) if value != float("inf")]
-    lag = f"; lowest bandwidth of amplifiers and gauges {number(min(slower), 4)} Hz" if slower else ""
+    slowest = min(*plan.bandwidths, *plan.lags)
+    lag = f"; lowest bandwidth of amplifiers and gauges {number(slowest, 4)} Hz" if slowest < float("inf") else ""
     note = f"{clock}; {noise}{lag}; highest platform mode {number(plan.highest, 4)} Hz. {test.chain.note[0].upper()}{test.chain.note[1:]}."
     return make_table(
         "Virtual test", ["channel", "role", "unit", "expected rms", "step"], [*driven, *read], notes=[note], provenance=test.source
