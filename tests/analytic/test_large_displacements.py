@@ -35,6 +35,7 @@ from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.section import Rectangle, cowper_rectangle
 from tests.analytic.shooting import cross_pivot
 from tests.analytic.strips import secant
@@ -70,6 +71,13 @@ def test_the_elastica_of_a_cantilever():
     assert found.displacement()[:, 1] == pytest.approx(across, abs=1e-7)
     assert 1.0 + found.displacement()[:, 0] == pytest.approx(along, abs=1e-7)
     assert found.rotation()[:, 2] == pytest.approx([0.46135195, 0.78174983, 1.21536812, 1.43028554], abs=1e-7)
+
+
+def test_the_strain_of_a_reinforced_leaf_is_that_of_its_thin_ends():
+    """A cantilever under a small moment M at its end: the strain 6 M / (E b t^2), with the thickness t of the ends, not of the middle."""
+    leaf = ReinforcedLeaf("soft", 1.0, 0.01, 0.1, LeafSection.BEAM, flexure_length=0.2, reinforced_thickness=0.04)
+    moment = 1e-3 * 0.1 * 0.01**2 / 6.0
+    assert strains(equilibrium(cantilever(leaf), {"platform.mz": moment})).largest == pytest.approx([1e-3], rel=0.05)
 
 
 def chain(count: int, whole: Leaf = THIN, *, density: float = 0.0, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Nonlinear:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import refuse
@@ -107,7 +108,9 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
     shapes = fields(float(width / length), float(thickness / length), poisson, rule.size, resolution.fields)
     plain = np.diag(1.0 / (2.0 * np.arange(resolution.bending) + 1.0))
     factor = 1.0 / (1.0 - poisson * poisson)
-    form = _blocks(twist_form, _squares(resolution.across) * (section.inertia_y / section.inertia_z), plain * factor, shapes.form * factor)
+    form = scipy.linalg.block_diag(
+        twist_form, _squares(resolution.across) * (section.inertia_y / section.inertia_z), plain * factor, shapes.form * factor
+    )
     pull = poisson * factor * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, : resolution.bending]
     bend = slice(size - resolution.bending, size)
     form[size:, bend], form[bend, size:] = pull, pull.T
@@ -174,12 +177,12 @@ def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = Fals
     points = polynomials(size, gauss(size).points)
     compliance = (project(relative[:, :3].T, places, weights, size) @ points).T
     section = part.section
-    thickness, width, polar, area = (float(np.ravel(each)[0]) for each in (section.height, section.width, section.polar, section.area))
+    thickness, width, polar, area = (float(np.min(each)) for each in (section.height, section.width, section.polar, section.area))
     wagner = 12.0 * (width * width / (thickness * length)) ** 2 * STRETCH_TWO if flat else 0.0
     return FlexureLaw(
         length=length,
         rigidity=rigidity,
-        form=_blocks(*forms),
+        form=scipy.linalg.block_diag(*forms),
         modes=modes,
         inner=inner,
         plate=np.zeros((size, 2, 0)),
@@ -236,15 +239,6 @@ def _tables(coefficients: list[Array], size: int) -> tuple[Array, Array]:
         curvatures[:, axis, done : done + len(each)] = (each @ at).T
         done += len(each)
     return curvatures[:size], curvatures[size:]
-
-
-def _blocks(*blocks: Array) -> Array:
-    size = sum(len(block) for block in blocks)
-    result, done = np.zeros((size, size)), 0
-    for block in blocks:
-        result[done : done + len(block), done : done + len(block)] = block
-        done += len(block)
-    return result
 
 
 def _force_compliance(section: Section, material: Material, scale: Array) -> Array:
