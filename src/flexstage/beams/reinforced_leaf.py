@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.base.number import Array, Number
-from flexstage.beams.beam import Beam, flexibility, inertia
+from flexstage.beams.beam import Beam, flexibility, inertia, shear_across
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, in_series, stations
@@ -29,7 +29,7 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
     section = Rectangle(thickness, np.asarray(part.width)[..., None], np.asarray(cowper_rectangle(material.contraction))[..., None])
     young, shear, density = (np.asarray(each)[..., None] for each in (material.modulus, material.shear, material.density))
     twisting = free_twist(section, shear) if part.warps else constrained_twist(section, points, young, shear)
-    return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, density), twisting)
+    return Beam(points, section, flexibility(section, young, shear, twisting, shear_across(material)), inertia(section, density), twisting)
 
 
 def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
