@@ -65,6 +65,13 @@ def test_moments_about_both_axes_add_as_vectors_in_a_round_neck():
     assert found.nominal == pytest.approx(32.0 * 5.0 / np.pi, rel=1e-13)
 
 
+def test_the_notch_factor_of_a_rectangular_neck_is_that_of_its_larger_side():
+    """(1 + b / 2R)^(9/20) for bending across the width b, whichever side is called the width."""
+    for thickness, width in ((1.0, 3.0), (3.0, 1.0)):
+        found = stress(Neck("m", thickness=thickness, width=width, profile=Circular(5.0)), STEEL, load(my=1.0, mz=1.0))
+        assert found.factor == pytest.approx((1.0 + 0.3) ** 0.45, rel=1e-13)
+
+
 def test_torsion_of_round_and_of_slender_rectangular_necks():
     """16 T / (pi d^3); far from the ends T / (0.208 a^3) in a square (Timoshenko & Goodier, section 109)."""
     rod = stress(Rod("m", length=40.0, diameter=2.0), STEEL, load(mx=1.0))

@@ -46,4 +46,9 @@ def _family(part: Neck) -> str | None:
     return "toroid" if part.width is None and isinstance(part.profile, Circular) else None
 
 
-NECK = PartLaw(neck_beam, concentration=lambda part: concentration(part.profile, part.thickness), ranges=_ranges, family=_family)
+NECK = PartLaw(
+    neck_beam,
+    concentration=lambda part: concentration(part.profile, np.maximum(part.throat.height, part.throat.width)),  # highest across the larger
+    ranges=_ranges,
+    family=_family,
+)
