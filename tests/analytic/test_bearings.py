@@ -57,6 +57,15 @@ def test_response_is_that_of_a_free_mass(bearing):
     assert found.platform[0] == 0
 
 
+@pytest.mark.parametrize("law", [fs.ModalDamping(0.01), fs.RayleighDamping(0.4, 1e-5)])
+def test_a_mode_at_zero_frequency_has_no_damping_ratio(law):
+    """Rayleigh's (alpha / omega + beta omega) / 2 has no limit there; the other modes keep their ratios."""
+    model = fs.lumped(slide(film()))
+    ratios = state_space(model, ports(model, ["platform.x"], ["motor"]), law).ratios
+    assert ratios[0] == 0.0
+    assert np.all(ratios[1:] > 0.0)
+
+
 def test_a_soft_spring_is_the_limit():
     """Modes, response, state space and stiffness tend to those with a spring of 1 N/m along the bearing."""
     model, soft = fs.lumped(slide(film())), fs.lumped(slide(film(1.0)))

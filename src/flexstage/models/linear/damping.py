@@ -37,7 +37,7 @@ def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     zero.
     """
     dampers = _diagonal(viscous_coupling(model, solved)) / (2.0 * np.sqrt(_nonzero(solved.values)))
-    return law_ratios(model, solved, damping) + np.where(solved.values == 0.0, 0.0, dampers)
+    return np.where(solved.values == 0.0, 0.0, law_ratios(model, solved, damping) + dampers)
 
 
 def law_rates(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
