@@ -228,6 +228,13 @@ def test_strokes_out_of_reach_are_refused():
         forward_kinematics(mechanism, ideal(mechanism), np.array([0.5]))
 
 
+def test_a_diverging_iteration_tells_its_last_step():
+    """The iteration ends at a step above a thousand sizes; the message has that step, not the one before it."""
+    mechanism = fs.case("double-triangle")
+    with pytest.raises(fs.DesignError, match=r"the last step was [\d.]+e\+\d+ times"):
+        forward_kinematics(mechanism, ideal(mechanism), 0.03 * np.array([0.0, 0.0, 0.0, 1.0, -1.0, 1.0]))
+
+
 def test_an_under_actuated_stage_is_refused():
     mechanism = parallel((0.05, 0.05), lambda length: fs.Leaf("metal", length, 0.0005, 0.02))
     loose = fs.Mechanism(

@@ -215,7 +215,7 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
         before = size
     raise refuse(
         "finite motion",
-        f"no convergence: the last step was {before:.3g} times the stage's size, {np.max(links.length):.3g} m",
+        f"no convergence: the last step was {size:.3g} times the stage's size, {np.max(links.length):.3g} m",
         "The links cannot be connected in this pose; use smaller strokes or poses",
     )
 
