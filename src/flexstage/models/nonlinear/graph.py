@@ -192,12 +192,11 @@ def _flexure_terms(law: FlexureLaw, bent: FlexureState) -> tuple[Array, Array]:
     count = law.form.shape[-1]
     motion = end_motion(law, bent)
     unit = (law.rigidity / law.length)[:, None, None]
-    units = np.concatenate([np.ones(3), np.ones(3)]) * unit
     wrench = bent.wrench
-    residual = (_transpose(motion) @ (units * wrench)[..., None])[..., 0]
+    residual = (_transpose(motion) @ (unit * wrench)[..., None])[..., 0]
     moved = bent.answer.moved
     whole = moved[..., count:, :6] @ motion
-    result = _transpose(motion) @ (units[..., None] * whole)
+    result = _transpose(motion) @ (unit[..., None] * whole)
     if bent.weight is not None:
         residual, result = _add_weight(law, bent, motion, residual, result)
     return residual, result + geometric(law, bent, wrench[..., :3], wrench[..., 3:])
