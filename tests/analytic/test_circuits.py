@@ -99,6 +99,7 @@ def test_the_nonlinear_model_and_the_rig_drive_the_circuit() -> None:
     [
         ({"left": coil(LEFT, X, "no name")}, 'invalid name "no name"'),
         ({"left": Link((GROUND, PLATFORM), "leaf", LEFT, X, (0.0, 0.0, 1.0), circuit="pair")}, "exerts no force"),
+        ({"left": coil(LEFT, X), "right": coil(RIGHT, X, "left")}, 'a link or an instance also has the name "left"'),
         ({"left": coil(LEFT, X, "pair"), "right": replace(coil(RIGHT, X, "pair"), part="other")}, "Use one part for all links"),
     ],
 )

@@ -181,8 +181,9 @@ def _link(where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
 
 
 def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
-    """A circuit joins force actuators of one part, and has a legal name."""
+    """A circuit joins force actuators of one part, and has a legal name that no other link or instance has."""
     parts: dict[str, str] = {}
+    taken = {*(name for name, link in mechanism.links.items() if not link.circuit), *unit_of_copy(mechanism)}
     for where, link, _ in _links(mechanism):
         part = mechanism.parts.get(link.part)
         name = link.circuit and link.circuit.removeprefix("-")
@@ -192,6 +193,8 @@ def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(f"{where}.circuit", f'invalid name "{link.circuit}"', 'Use e.g. "pair" or "-pair"')
         if not isinstance(inner(part), ThrustActuator):
             yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Remove this key, or use a force actuator")
+        elif name in taken:
+            yield Finding(f"{where}.circuit", f'a link or an instance also has the name "{name}"', "Use a name of its own")
         elif parts.setdefault(name, link.part) != link.part:
             what = f'different parts in one circuit (got "{link.part}", and "{parts[name]}" in another link)'
             yield Finding(f"{where}.circuit", what, "Use one part for all links of a circuit")
