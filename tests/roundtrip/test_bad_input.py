@@ -28,6 +28,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Filleted, Straight
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.studies.sweeps.file import load_study
 from tests.roundtrip.designs import TEXT
@@ -304,6 +305,7 @@ STAGE = loads(TEXT)
 STEEL = STAGE.materials["steel"]
 UNIT = STAGE.units["leg"]
 X, Y, Z, O = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)  # noqa: E741
+REINFORCED = ReinforcedLeaf("steel", 0.05, 0.0005, 0.01, flexure_length=0.01, reinforced_thickness=0.002)
 STACK = Piezo(stroke=1e-5, stiffness=1e7, length=0.02, diameter=0.005)
 
 
@@ -340,6 +342,9 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (part(Notch("steel", thickness=0.012, width=0.01, profile=Circular(0.005))), ["parts.p.thickness", "12 mm", "width, 10 mm"]),
         (part(Notch("steel", thickness=0.01, width=0.01, profile=Circular(0.005))), ["parts.p.thickness", "10 mm", "width, 10 mm"]),
         (part(Notch("steel", 0.001, 0.01, Filleted(length=0.01, radius=0.006))), ["profile.radius", "6 mm", "half the length, 5 mm"]),
+        (part(dataclasses.replace(REINFORCED, curvature=2.0)), ["parts.p.curvature", "not modelled in a reinforced leaf"]),
+        (part(dataclasses.replace(REINFORCED, face_temperature_difference=5.0)), ["parts.p.face_temperature_difference", "not modelled"]),
+        (part(dataclasses.replace(REINFORCED, inner_modes=2)), ["parts.p.inner_modes", "not modelled"]),
         (part(Restricted(Notch("steel", 0.012, 0.01, Circular(0.005)), elastic=())), ["parts.p.part.thickness", "12 mm"]),
         (part(Restricted(Rod("steel", 0.1, 0.01), (Freedom.X,), (Freedom.X,))), ["parts.p", "x both elastic and free"]),
         (part(Rod("steel", length=np.array([0.1, 0.2, -0.3]), diameter=0.01)), ["parts.p.length at index 2", "-300 mm"]),

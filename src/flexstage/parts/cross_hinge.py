@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -54,9 +54,13 @@ class CrossHinge(Compound):
 
         if self.middle_width is None:
             return Composition({"left": member(leaf, 1.0, -0.5 * self.spacing), "right": member(leaf, -1.0, 0.5 * self.spacing)})
-        middle = Leaf(self.material, self.length, self.thickness, self.middle_width, self.section, self.inner_modes)
-        outer = {"left_low": member(leaf, 1.0, -self.spacing), "left_high": member(leaf, 1.0, self.spacing)}
-        return Composition({**outer, "right": member(middle, -1.0, 0.0)})
+        return Composition(
+            {
+                "left_low": member(leaf, 1.0, -self.spacing),
+                "left_high": member(leaf, 1.0, self.spacing),
+                "right": member(replace(leaf, width=self.middle_width), -1.0, 0.0),
+            }
+        )
 
     @property
     def orders(self) -> Iterator[Order]:

@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.parts.leaf import Leaf
@@ -23,7 +24,8 @@ class ReinforcedLeaf(Leaf):
     """Leaf spring with a reinforced middle: thin over the `flexure_length` at each end, `reinforced_thickness` between them.
 
     The step is square, or has a quarter-circle fillet of radius `fillet` at its foot, within the flexure length. The ideal degrees of
-    freedom are the same as for a leaf.
+    freedom are the same as for a leaf. No model uses `inner_modes`, `curvature` and
+    `face_temperature_difference` of a reinforced leaf: they must be absent or zero.
     """
 
     kind: ClassVar[str] = "reinforced_leaf"
@@ -50,6 +52,13 @@ class ReinforcedLeaf(Leaf):
         right = [(start, single(self.step)), *arc, (half, 0.0)]
         rows = [*((-x, up) for x, up in reversed(right)), *right]
         return tuple((float(x), Rectangle(self.thickness + 2.0 * up, self.width).first) for x, up in rows)
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """Errors: keys of a leaf that no model of a reinforced leaf uses."""
+        for name in ("inner_modes", "curvature", "face_temperature_difference"):
+            if np.any(getattr(self, name)):
+                yield Finding(name, "not modelled in a reinforced leaf", "Remove it, or use a leaf")
 
     @property
     def orders(self) -> Iterator[Order]:
