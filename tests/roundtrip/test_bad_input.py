@@ -355,6 +355,10 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (part(ComplianceMatrix(matrix(x33=0.0), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite", "restricted part"]),
         (part(dataclasses.replace(STACK, preload=20.0, maximum_load=10.0)), ["parts.p.preload", "20 N", "maximum load, 10 N"]),
         (part(dataclasses.replace(STACK, voltage_low=100.0, voltage_high=-20.0)), ["parts.p.voltage_low", "100 V", "-20 V"]),
+        (
+            part(dataclasses.replace(STACK, voltage_low=-20.0, voltage_high=120.0, bias=-100.0)),
+            ["parts.p.voltage_low", "at most the bias, -100 V", "-20 V"],
+        ),
         (linked(Notch("steel", 0.001, 0.01, Circular(0.005))), ["links.l", 'part "p" is not axisymmetric', 'bends = "y"']),
         (linked(Neck("steel", 0.001, Straight(0.005), width=0.002)), ["links.l", "not axisymmetric"]),
         (linked(Joint((Freedom.RZ,))), ["links.l", "not axisymmetric"]),

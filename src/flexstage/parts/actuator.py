@@ -186,3 +186,4 @@ class ChargedActuator(StrokeActuator):
         yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange both values", VOLTAGE)
         advice = "Use a bias within the range of the stack"
         yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)
+        yield Order("voltage_low", self.voltage_low, self.bias, "the bias", advice, VOLTAGE, strict=False)

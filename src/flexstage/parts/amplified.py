@@ -160,13 +160,7 @@ class Amplified(BetweenFaces, ChargedActuator):
         [1.0, 1.0, 1.0, 0.0]
         """
         lumps = super().carried
-        if self.inertia is None:
-            return lumps
-        own = 0.5 * tensor(self.inertia)
-        result = np.zeros((*np.broadcast_shapes(lumps.shape[:-2], own.shape[:-2]), 12, 12), dtype=np.result_type(lumps, own)) + lumps
-        for start in (3, 9):
-            result[..., start : start + 3, start : start + 3] += own
-        return result
+        return lumps if self.inertia is None else lumps + np.kron(np.diag([0.0, 1.0, 0.0, 1.0]), 0.5 * tensor(self.inertia))
 
 
 @dataclass(frozen=True, eq=False)
