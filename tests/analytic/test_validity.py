@@ -78,6 +78,13 @@ def test_outside_of_what_was_compared_nothing_is_stated():
     assert "z" not in validity(circular(0.2)).errors
     assert "rx" not in validity(circular(0.2)).errors
     assert not validity(circular(1.2)).errors
+
+
+def test_no_error_is_stated_for_a_neck_thicker_than_wide():
+    """With its sides exchanged, the law of a bar would take plate action across the wrong side, and miss the error by 1.4 %."""
+    flat, upright = (Neck("m", thickness=sides[0], width=sides[1], profile=Straight(30.0)) for sides in ((1.0, 10.0), (10.0, 1.0)))
+    assert float(validity(flat).errors["y"]) == pytest.approx(0.05, abs=0.002)
+    assert not validity(upright).errors
     assert not validity(circular(0.2), material=replace(UNIT, poisson=0.49)).errors
     found = validity(circular(np.array([0.2, 1.2]))).errors["x"]
     assert np.isnan(found).tolist() == [False, True]

@@ -46,6 +46,7 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
     - The error of a notch includes the compliance of its roots, on blocks of full height and width. Straight notches, leaves and rods end
       at rigid faces.
     - Along z and about x, the error of a notch is unknown, because the blocks at its ends are much more compliant.
+    - The error of a rectangular part that is thicker than wide is unknown.
     - The error of parts with a specified matrix is not estimated.
 
     >>> from flexstage.parts.notch import Notch
@@ -131,10 +132,10 @@ def within(family: str, axis: str, hinge: HingeDimensions) -> Array:
     >>> bool(within("bar", "x", hinge_dimensions(Rod("steel", length=0.1, diameter=0.002), 0.45)))
     False
     """
-    inside = _between(hinge.poisson, (0.2, 0.4))
     wide, tall = hinge.width / hinge.thickness, hinge.width / hinge.height
+    inside = _between(hinge.poisson, (0.2, 0.4)) & _between(wide, (1.0, np.inf))
     if family in {"notch", "fillet"}:
-        inside &= _between(hinge.root**2, (0.0, 0.65 if axis == "y" else HIGHEST[family])) & _between(wide, (1.0, np.inf))
+        inside &= _between(hinge.root**2, (0.0, 0.65 if axis == "y" else HIGHEST[family]))
     if family in {"notch", "fillet"} and axis != "rz":
         inside &= _between(hinge.root**2, (0.015, np.inf)) & _between(wide * hinge.root, (0.0, 20.0))
         inside &= _between(tall, (0.0, 1.0 if axis == "y" else 3.0 if family == "notch" else 4.5))
