@@ -35,6 +35,8 @@ from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
+from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Circular
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.section import Rectangle, cowper_rectangle
 from tests.analytic.shooting import cross_pivot
@@ -71,6 +73,14 @@ def test_the_elastica_of_a_cantilever():
     assert found.displacement()[:, 1] == pytest.approx(across, abs=1e-7)
     assert 1.0 + found.displacement()[:, 0] == pytest.approx(along, abs=1e-7)
     assert found.rotation()[:, 2] == pytest.approx([0.46135195, 0.78174983, 1.21536812, 1.43028554], abs=1e-7)
+
+
+def test_the_strain_of_a_notch_is_that_of_its_throat():
+    """A small moment M bends a notch with t/R = 0.2: the strain at its throat is 6 M / (E b t^2)."""
+    link = Link(("ground", "platform"), "leaf", at=(0.5, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    model = nonlinear(stage(Notch("soft", 0.1, 1.0, Circular(0.5)), {"platform": body(1.0, 0.0, 0.0)}, {"leaf": link}))
+    moment = 1e-6 * 0.1**2 / 6.0
+    assert strains(equilibrium(model, {"platform.mz": moment})).largest == pytest.approx([1e-6], rel=0.005)
 
 
 def test_the_strain_of_a_reinforced_leaf_is_that_of_its_thin_ends():

@@ -29,7 +29,8 @@ def _of_rod(part: Rod, material: Material, resolution: Resolution) -> FlexureLaw
 
 
 def _of_hinge(part: Notch | Neck, material: Material, resolution: Resolution) -> FlexureLaw:
-    return beam_law(beam_of(part, material), replace(STRESSES, points=resolution.points))
+    """With more points than a leaf, because the curvature has a peak at the throat: an odd number, so that the throat is a point."""
+    return beam_law(beam_of(part, material), replace(STRESSES, points=max(21, resolution.points)))
 
 
 def _of_reinforced(part: ReinforcedLeaf, material: Material, resolution: Resolution) -> FlexureLaw:

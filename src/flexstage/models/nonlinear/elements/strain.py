@@ -50,11 +50,13 @@ class Strains:
 def strains(state: State) -> Strains:
     """Compute strains at the ends and the integration points of every flexure, for its thinnest section.
 
+    At the throat of a notch or neck of thickness t and radius R, the strain is too low by 1 % at t/R = 0.1, 8 % at 0.04, 19 % at 0.02.
+
     The strain is |N| / (E A) + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. N is the
     axial force, E A the axial stiffness; k_y and k_z are the curvatures relative to the natural shape, k_x is the twist rate, t the
     thickness and b the width. At a clamped end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with this strain (nu:
     Poisson's ratio). Stress includes stretch, bending about both axes, section curvature of a leaf, and Saint-Venant torsion. Restrained
-    warping and stress concentration at fillets are neglected.
+    warping and stress concentration at notches and fillets are neglected.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
