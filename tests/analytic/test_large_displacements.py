@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipk
 
 from flexstage.analysis.linear_statics.drift import drift
+from flexstage.analysis.loaded.strained import strain_warnings
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Number
 from flexstage.base.units.scale import Z
@@ -81,6 +82,15 @@ def test_the_strain_of_a_notch_is_that_of_its_throat():
     model = nonlinear(stage(Notch("soft", 0.1, 1.0, Circular(0.5)), {"platform": body(1.0, 0.0, 0.0)}, {"leaf": link}))
     moment = 1e-6 * 0.1**2 / 6.0
     assert strains(equilibrium(model, {"platform.mz": moment})).largest == pytest.approx([1e-6], rel=0.005)
+
+
+def test_a_notch_has_no_shapes_across_its_width():
+    """A wide notch turned by 0.05 rad at its end: b^2 k / t is above 100, but its law has no plate bending that could be too coarse."""
+    notch = Notch("soft", 0.0002, 0.02, Circular(0.003))
+    link = Link(("ground", "platform"), "leaf", at=(0.003, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    found = strains(equilibrium(nonlinear(stage(notch, {"platform": body(0.006, 0.0, 0.0)}, {"leaf": link})), hold={"platform.rz": 0.05}))
+    assert np.isnan(found.curving).all()
+    assert not list(strain_warnings(found))
 
 
 def test_the_strain_of_a_reinforced_leaf_is_that_of_its_thin_ends():

@@ -34,7 +34,7 @@ _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 class Strains:
     """Strains of l flexures by name: the `largest` strain (..., l), and the ratio `curving` (..., l) of plate bending.
 
-    `curving` is b^2 k / t with the width b, the thickness t and the largest curvature k.
+    `curving` is b^2 k / t with the width b, the thickness t and the largest curvature k; NaN for flexures without plate bending.
 
     `stress` (..., l) is the largest von Mises stress on the faces [Pa]; `limit` (l,) the lowest stress limit of the material, NaN if
     unknown.
@@ -80,7 +80,7 @@ def strains(state: State) -> Strains:
         largest += list(pulled + np.max(bending, axis=-1))
         stressed += list(_stress(group, _materials(state, group), lies))
         curved = np.max(np.abs(_bent(lies)[..., 2]), axis=-1) / law.length[:, None]
-        curving += list(2.0 * law.half[:, None, 1] ** 2 / law.half[:, None, 0] * curved)
+        curving += list(2.0 * law.half[:, None, 1] ** 2 / law.half[:, None, 0] * curved if law.plate.size else np.nan * curved)
     known = np.where(state.converged, 1.0, np.nan)[..., None]
     results = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
     return Strains(tuple(names), *results, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
