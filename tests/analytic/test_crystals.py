@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 from flexstage.base.units.scale import mm
 from flexstage.beams.compliance import compliance
+from flexstage.beams.fixed_end_modes import Bending, fixed_end_bending
+from flexstage.beams.leaf import leaf_modes
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dumps, loads
@@ -21,6 +23,7 @@ from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
+from flexstage.parts.section import cowper_rectangle
 from flexstage.spatial.frame import axes
 
 SILICON = Material(young=None, poisson=None, density=2329.0, c11=165.6e9, c12=63.9e9, c44=79.5e9)
@@ -86,6 +89,17 @@ def test_a_leaf_with_a_middle_as_thick_as_its_ends_shears_as_a_leaf():
     lying, sizes = seen((1.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ("silicon", 6.0 * mm, 0.5 * mm, 10.0 * mm, LeafSection.BEAM)
     reinforced = ReinforcedLeaf(*sizes, flexure_length=2.0 * mm, reinforced_thickness=0.5 * mm)
     np.testing.assert_allclose(compliance(reinforced, lying), compliance(Leaf(*sizes), lying), rtol=1e-12)
+
+
+def test_modes_of_a_leaf_shear_in_the_plane_of_bending():
+    """The frequency of a leaf of ten thicknesses, bent with 79.5 or 50.9 GPa, differs by 2.7 %."""
+    lying, leaf = seen((1.0, 1.0, 0.0), (0.0, 0.0, 1.0)), Leaf("silicon", 10.0 * mm, 1.0 * mm, 5.0 * mm, LeafSection.BEAM, inner_modes=1)
+    area, inertia = 5e-6, 5e-12 / 12.0
+    bending = Bending(
+        0.01, lying.young * inertia, lying.shear_across * area / cowper_rectangle(lying.contraction), 2329.0 * area, 2329.0 * inertia
+    )
+    found, expected = leaf_modes(leaf, lying, np.zeros(1))[0], fixed_end_bending(1, bending, 1, np.zeros(1))
+    np.testing.assert_allclose(found.squares, expected.squares, rtol=1e-9)
 
 
 def test_a_crystal_that_is_isotropic_is_the_isotropic_material():

@@ -112,7 +112,8 @@ def leaf_modes(part: Leaf, material: Material, places: Array) -> tuple[FixedEndM
     """
     section = Rectangle(part.thickness, part.width, cowper_rectangle(material.contraction))
     density, is_plate = material.density, part.section is LeafSection.PLATE
-    rigidity, shear = material.modulus * section.inertia_z, material.shear * section.area / section.shear
+    across = material.shear if material.shear_across is None else material.shear_across
+    rigidity, shear = material.modulus * section.inertia_z, across * section.area / section.shear
     plate = Plate(part.width, material.contraction) if is_plate else None
     bending = Bending(part.length, rigidity, shear, density * section.area, density * section.inertia_z, plate)
     warped = section.area * section.area * section.area / 144.0
