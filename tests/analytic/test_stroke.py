@@ -9,7 +9,9 @@ import pytest
 
 import flexstage as fs
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.models.nonlinear.state import Status
 from flexstage.show.command.displaced import OperatingPointOptions, command_stage
+from tests.analytic.test_large_displacements import vee
 from tests.laws.test_nonlinear import guide
 
 
@@ -97,3 +99,20 @@ def test_what_is_bent_beyond_the_theory_is_told():
     told = " ".join(each.what for each in fs.operating_point(guide(), {"platform.y": 90e-3}).warnings)
     assert "strain beyond linear elasticity" in told
     assert "too large for two shape functions across the width" in told
+
+
+def test_a_stage_beyond_its_limit_load_is_unstable_when_its_drive_is_free():
+    """Just beyond the limit, a fixed drive keeps the vee stable; released, it snaps through and has no frequencies."""
+    path = fs.load_path(vee(), "platform.y", np.array([-6.5e-4]))
+    found = fs.stroke(path)
+    assert path.motions.tolist() == [0]
+    assert np.isnan(found.along.at("1", "f1"))
+    assert found.along.at("1", "unstable") == 1.0
+    assert "the free stage is unstable at 1 of 1 points" in found.warnings[0].what
+
+
+def test_a_missing_equilibrium_of_a_stage_without_flexures_is_told():
+    """Without flexures there is no strain to be unknown; the number of unstable modes is unknown."""
+    path = fs.load_path(fs.nonlinear(fs.case("spiral-stage")), "platform.x", np.array([0.0, 1e-4]))
+    lost = replace(path, state=replace(path.state, status=np.array([path.state.status[0], Status.SINGULAR])))
+    assert [each.what.partition(",")[0] for each in fs.stroke(lost).warnings] == ["no equilibrium found at 1 of 2 points"]

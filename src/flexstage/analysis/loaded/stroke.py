@@ -82,7 +82,6 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
     ('platform.x', 'force', 'stiffness', 'platform.y')
     """
     points = Points(path.drive, path.values, path.state, path.locked, rest, kinematics)
-    points.__dict__["motions"] = path.motions
     none = _FREQUENCIES[points.frequencies.shape[-1] :]
     columns = {name: column for name, column in points.columns.items() if name not in none}
     values = np.stack([values() for values, _ in columns.values()], axis=-1)
@@ -118,8 +117,8 @@ class Points:
 
     @cached_property
     def motions(self) -> Array:
-        """Number of unstable modes of each state with the drive coordinate fixed; -1 without equilibrium."""
-        return unstable_motions(self.state)
+        """Number of unstable modes of each released state; -1 without equilibrium."""
+        return unstable_motions(self.state, locked=self.locked)
 
     @cached_property
     def frequencies(self) -> Array:
@@ -193,7 +192,7 @@ def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
 
 def _warnings(result: Stroke) -> Iterator[Finding]:
     yield from strain_warnings(result.strained)
-    lost = np.isnan(result.along.values[:, -2])
+    lost = np.isnan(result.along.values[:, -1])
     if lost.any():
         what = f"no equilibrium found at {int(lost.sum())} of {len(lost)} points, the first at {_first(result, lost)}"
         yield Finding(result.drive, what, "Reduce the stroke, or use arc-length continuation (fs.continuation)")
