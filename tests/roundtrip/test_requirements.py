@@ -166,6 +166,13 @@ def test_the_corner_of_all_required_strokes(stage):
     assert gauges.passed
 
 
+def test_an_upper_limit_of_a_stroke_is_not_a_required_stroke(stage):
+    """A stroke along z of at most 400 um does not add to the strokes that are required at once."""
+    alone = {"stroke.x": "at least 50 um", "corner": "at most 100 %"}
+    (_, one), (_, both, _) = (judge(replace(stage, requirements=each)) for each in (alone, {**alone, "stroke.z": "at most 400 um"}))
+    assert both.value == one.value
+
+
 def test_margins_and_edges(stage):
     """Ten per cent to spare is 0.1 on either side; meeting a limit exactly is passing."""
     mass = 13.9965

@@ -83,7 +83,7 @@ def required_values(mechanism: Mechanism, model: LinearModel | None = None) -> d
 
 
 def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
-    return {line.name: line.limit for line in lines if line.kind is stroke}
+    return {line.name: line.limit for line in lines if line.kind is stroke and line.sense is Sense.AT_LEAST}
 
 
 def value_or_reason(bench: StageResults, asked: Measure) -> Array | str:
