@@ -36,9 +36,8 @@ def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verd
     >>> [bool(verdict.passed) for verdict in judge(double_triangle())]
     [True, True, True, True, True, True, True, True]
     """
-    lines = requirements(mechanism)
-    bench = bench or StageResults(mechanism, _required_strokes(lines))
-    return tuple(_verdict(bench, line) for line in lines)
+    bench = bench or bench_of(mechanism)
+    return tuple(_verdict(bench, line) for line in requirements(mechanism))
 
 
 def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
@@ -65,7 +64,8 @@ def bench_of(mechanism: Mechanism) -> StageResults:
     >>> bench_of(double_triangle()).command["x"]
     5e-05
     """
-    return StageResults(mechanism, _required_strokes(requirements(mechanism)))
+    lines = (line for line in requirements(mechanism) if line.kind is stroke and line.sense is Sense.AT_LEAST)
+    return StageResults(mechanism, {line.name: line.limit for line in lines})
 
 
 def required_values(mechanism: Mechanism, model: LinearModel | None = None) -> dict[str, float]:
@@ -80,10 +80,6 @@ def required_values(mechanism: Mechanism, model: LinearModel | None = None) -> d
         bench = bench.with_model(model)
     found = ((line.key, value_or_reason(bench, line)) for line in requirements(mechanism))
     return {key: float(np.real(value)) for key, value in found if not isinstance(value, str)}
-
-
-def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
-    return {line.name: line.limit for line in lines if line.kind is stroke and line.sense is Sense.AT_LEAST}
 
 
 def value_or_reason(bench: StageResults, asked: Measure) -> Array | str:
