@@ -24,6 +24,7 @@ from flexstage.base.units.unit import quantity_of_unit
 from flexstage.cases.registry import CASES, case
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
+from flexstage.show.tables.requirements import verdict_text
 from tests.show.stages import seldom
 
 
@@ -171,6 +172,14 @@ def test_an_upper_limit_of_a_stroke_is_not_a_required_stroke(stage):
     alone = {"stroke.x": "at least 50 um", "corner": "at most 100 %"}
     (_, one), (_, both, _) = (judge(replace(stage, requirements=each)) for each in (alone, {**alone, "stroke.z": "at most 400 um"}))
     assert both.value == one.value
+
+
+def test_a_margin_to_a_limit_of_zero_is_no_percentage(stage):
+    """A clearance of 1 mm above a limit of 0 is not a relative margin of 0.1 %; alone, it is told as a length."""
+    lines = {"frequency.platform.1": "at least 100 Hz", "clearance": "at least 0 mm"}
+    told = [verdict_text(judge(replace(stage, requirements=each))) for each in (lines, {"clearance": "at least 0 mm"})]
+    assert told[0].endswith("%, for frequency.platform.1.")
+    assert told[1].endswith(" mm, for clearance.")
 
 
 def test_margins_and_edges(stage):

@@ -70,10 +70,9 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
     if failed:
         names = ", ".join(f"{each.requirement.key} ({'unknown' if each.value is None else margin_text(each)})" for each in failed)
         return f"{len(verdicts) - len(failed)} of {len(verdicts)} requirements are met. Not met: {names}."
-    margins = {verdict.requirement.key: first_margin(verdict) for verdict in verdicts}
-    least = min(margins, key=lambda key: margins[key])
+    least = min(verdicts, key=lambda each: (each.requirement.limit == 0.0, first_margin(each)))
     which = f"All {len(verdicts)} requirements are met" if len(verdicts) > 1 else "The requirement is met"
-    return f"{which}; the smallest margin is {percent(margins[least], 3)}, for {least}."
+    return f"{which}; the smallest margin is {margin_text(least).removeprefix('+')}, for {least.requirement.key}."
 
 
 def first_margin(verdict: Verdict) -> float:
