@@ -56,6 +56,13 @@ def test_a_stroke_ends_at_a_stop_before_its_actuator_does(back):
     assert (turned.low.item(), turned.high.item()) == (held.low.item(), held.high.item())
 
 
+def test_a_stop_on_the_nearer_side_limits_the_symmetric_stroke():
+    """The actuator ends the stroke in +x, and a stop in -x; the stop is nearer."""
+    held = strokes(replace(ONE, stops={"end": Stop(PLATFORM, FACE, 1.0, 1 * um)}))
+    assert held.symmetric.item() == 1 * um < held.high.item() == strokes(ONE).high.item()
+    assert held.limiting == ("stops/end",)
+
+
 def test_what_is_required_of_a_stroke_and_of_all_at_once_follows():
     """With lost motion made up by command the platform itself moves the gap, and 18 um both ways are 3.6 times the gap."""
     stage = replace(ONE, stops={"end": Stop(PLATFORM, FACE, 5 * um)}, requirements={"stroke.x": "at least 18 um", "corner": "at most 1"})

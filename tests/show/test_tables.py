@@ -11,15 +11,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.complete import Analysis, Model
+from flexstage.analysis.complete import Analysis, Model, analyse
 from flexstage.analysis.dynamics.modes import modes
 from flexstage.analysis.dynamics.response import response
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.linear_statics.units import units
+from flexstage.analysis.loaded.misalign import Misalignments
 from flexstage.analysis.loaded.stability import Stability
 from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.analysis.workspace.workspace import Workspace
+from flexstage.base.labelled import Matrix
 from flexstage.base.record import INNER, Along, Graded, Heading, Layout, UnitIn, walk
 from flexstage.base.units.quantity import ANGLE, FORCE, FREQUENCY, RATIO, SHARE, Bound
 from flexstage.cases.double_triangle import double_triangle
@@ -27,16 +29,19 @@ from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
+from flexstage.show.displaced import misalignment_tables
 from flexstage.show.display import to_typography
 from flexstage.show.page import BlockRow, Folded
 from flexstage.show.render import fold, to_html, to_rich
+from flexstage.show.sections.dynamics import mode_section, response_section
 from flexstage.show.table import Column, Mark, Table, make_table, record_table, result_table, row_table
 from flexstage.show.tables.description import value_tables
 from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
-from flexstage.show.tables.overview import axis_table
+from flexstage.show.tables.overview import axis_table, summary_tables
 from flexstage.show.tables.response import response_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
+from flexstage.show.viewer.data import still_data
 from flexstage.spatial.frame import COMPONENTS
 from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported, seldom
 from tests.show.widths import broken, printed
@@ -350,3 +355,34 @@ def test_responses_that_are_only_rounding_are_0():
     assert rows["platform.z, B"] == ["0", "0", "-", "-"]
     assert "0" not in rows["platform.y, B"]
     assert any("0: rounding noise" in note for note in table.notes)
+
+
+def test_texts_on_modes_are_true_for_light_platforms():
+    """In the bridge, a platform mode has 5 % of its kinetic energy in the platform, and a local mode 69 %."""
+    found = analyse(case("bridge"), whole=False)
+    shares = [found.modes.mode(place).platform_share for place in (*found.modes.platform, *found.modes.local)]
+    assert min(shares[: len(found.modes.platform)]) < 0.1
+    assert max(shares[len(found.modes.platform) :]) > 0.5
+    notes = [note for each in summary_tables(found, explained=True) if isinstance(each, Table) for note in each.notes]
+    bare = replace(found, modes=replace(found.modes, platform=()))
+    texts = [*notes, mode_section(bare, still_data(found.mechanism)).blocks[0].text]
+    assert not [text for text in texts if "at rest" in text or "kinetic" in text]
+
+
+def test_the_limit_of_a_stroke_is_that_of_the_listed_stroke():
+    """Lost motion changes which actuator limits the stroke along y."""
+    found = analyse(double_triangle(), whole=False)
+    limits = dict(zip(found.workspace.corrected.coordinates, found.workspace.corrected.limiting, strict=True))
+    assert {row[0]: row[2] for row in axis_table(found).texts()[1:]} == limits
+
+
+def test_a_force_driven_stage_has_no_response_per_stroke():
+    (picture, *_) = response_section(analysed("voice-coil-stage", Model.LUMPED)).blocks
+    assert "per stroke" not in picture.caption
+
+
+def test_an_unknown_critical_misalignment_is_stable_only_as_far_as_computed():
+    """Without a critical misalignment, the computed path may end before the largest one."""
+    one, none = (Matrix(np.full((1, 1), value), ("a",), ("rx",), (("rad",),)) for value in (0.01, np.nan))
+    table = misalignment_tables(Misalignments(none, one, 1e-3, one, one, None))[0]
+    assert table.notes == ("Each instance is misaligned individually, in its own frame. -: stable up to the values below.",)

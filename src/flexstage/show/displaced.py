@@ -198,7 +198,7 @@ def misalignment_tables(found: Misalignments) -> list[Table]:
     size = format_value(found.size, MOTION.unit(found.critical.columns[0]), 4)
     alone = "Each instance is misaligned individually, in its own frame"
     return [
-        column_table("Critical misalignment", found.critical, head="instance", notes=[f"{alone}. -: stable up to the largest amount."]),
+        column_table("Critical misalignment", found.critical, head="instance", notes=[f"{alone}. -: stable up to the values below."]),
         column_table("Largest computed stable misalignment", found.followed, head="instance"),
         column_table(
             f"Load at a misalignment of {size}", found.load, head="instance", notes=[f"{alone}, about its origin or the middle of a link."]

@@ -64,10 +64,14 @@ class StrokeLimits:
 class SingleAxis(Result):
     """Strokes of the platform along one coordinate with the others fixed at zero, from `low` to `high` (..., f) [m, rad].
 
-    `limiting` names the actuator or stop (`stops/end`) that determines each `high` limit of the first design.
+    `limiting` names the actuator or stop (`stops/end`) that determines each symmetric stroke of the first design.
     """
 
-    TABLE: ClassVar[Layout] = Layout("Single-axis strokes", "table limiting", notes=("One coordinate at a time, the others at zero.",))
+    TABLE: ClassVar[Layout] = Layout(
+        "Single-axis strokes",
+        "table limiting",
+        notes=("One coordinate at a time, the others at zero. Limited by: limit of the symmetric stroke.",),
+    )
 
     coordinates: tuple[str, ...]
     low: Array
@@ -223,7 +227,7 @@ def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, pr
     ends = np.stack([limits.low[..., :, None] / gain, limits.high[..., :, None] / gain])
     above = np.nan_to_num(np.max(ends, axis=0), nan=np.inf)
     below = np.nan_to_num(np.min(ends, axis=0), nan=-np.inf)
-    first = above.reshape(-1, *above.shape[-2:])[0]
+    first = np.minimum(above, -below).reshape(-1, *above.shape[-2:])[0]
     limiting = tuple(mapping.rows[index] for index in np.argmin(np.round(first / np.min(first, axis=0), 9), axis=0))
     return SingleAxis(mapping.columns, np.max(below, axis=-2), np.min(above, axis=-2), limiting, at, provenance)
 

@@ -41,10 +41,7 @@ def mode_section(analysis: Analysis, data: StageData) -> Section | None:
     modes = analysis.modes
     if modes is None or not modes.names:
         return None
-    text = (
-        "Undamped modes with fixed actuators. In platform modes, the platform has a large fraction of the kinetic energy. Local modes of "
-        "single units with frequencies near the platform modes are listed too."
-    )
+    text = "Undamped modes with fixed actuators. Local modes with frequencies near the platform modes are listed too."
     shapes = tuple(_shapes(modes, data))
     gallery = [BlockRow(shapes, narrow=True), Prose(SHAPES)] if shapes else []
     return section("Modes", [Prose(text), mode_table(modes), *gallery])
@@ -83,7 +80,7 @@ def response_section(analysis: Analysis) -> Section | None:
     if response is not None and np.size(response.values):
         figure = response_figure(response, analysis.modes)
         drawn = to_svg(figure, "strokes", "Response of the platform to the strokes")
-        caption = "Platform motion per stroke: each output for the actuator that moves it most. Dotted: the platform's modes."
+        caption = "Platform motion per actuator input: each output for the actuator that moves it most. Dotted: the platform's modes."
         blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
     if ground is not None and np.size(ground.values):
         figure = response_figure(ground, analysis.modes)

@@ -163,7 +163,7 @@ def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     """Stroke in both directions and its limit, by coordinate."""
     if analysis.workspace is not None:
         single = analysis.workspace.corrected or analysis.workspace.single_axis
-        names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single_axis.limiting
+        names, values, causes = single.coordinates, first_design(single.symmetric, 1), single.limiting
     elif analysis.force_workspace is not None:
         names, values, causes = (
             analysis.force_workspace.coordinates,
@@ -208,7 +208,7 @@ def _platform_modes(modes: Modes) -> Table | None:
     if modes.local:
         lowest = number(modes.mode(min(modes.local)).frequency, _DIGITS)
         count = count_text(len(modes.local), "local mode")
-        notes = [f"{count} (platform nearly at rest), {lowest} Hz to 1.5 times the highest."]
+        notes = [f"{count}, {lowest} Hz to 1.5 times the highest."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
     return None if table is None else merge_rows(table)
