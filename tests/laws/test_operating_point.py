@@ -121,6 +121,7 @@ def test_a_warm_stage_sags_as_it_drifts():
         ({"fixed": ["platform.ry", "body.x"]}, "unknown body or point"),
         ({"at": {"platform.rz": 1.5, "platform.y": 0.09}}, "of the displacement"),
         ({"at": {"platform.x": -3e-2}}, "unstable mode"),
+        ({"at": {"platform.x": -9e-6}, "loads": {"platform.fy": 1e-3}}, r"stable up to 19% of the displacements\."),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_reason(asked: dict[str, Any], said: str):

@@ -228,12 +228,12 @@ def _require_stable(requested: Conditions, state: State) -> None:
 
 
 def _stable_until(requested: Conditions) -> str:
-    """Largest share, in sixteenths, of loads and displacements at which the stage is stable."""
+    """Largest share, in sixteenths, of the displacements, or of the loads without displacements, at which the stage is stable."""
     rest = equilibrium(requested.model, {name: _SHARES * value for name, value in requested.loads.items()})
     states = requested.reach(_SHARES) if requested.at else rest
     stays = unstable_motions(states, locked=requested.fixed) == 0
     count = int(np.argmin(np.append(stays, False)))
-    return f"; it is stable up to {_SHARES[count - 1]:.0%} of the loads and displacements" if count else ""
+    return f"; it is stable up to {_SHARES[count - 1]:.0%} of the {'displacements' if requested.at else 'loads'}" if count else ""
 
 
 def _held(requested: Conditions, state: State) -> Matrix | None:
