@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.loaded.load_cases import REST, LoadCase, buckling_factors
+from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, buckling_factors
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.lines import centre_lines, critical_motion, mode_motions
 from flexstage.models.nonlinear.paths.load_path import LoadPath
@@ -129,3 +129,11 @@ def test_points_stand_in_columns_of_one_unit(course: LoadPath) -> None:
     assert stress[1] == "-"
     assert "strain [um/m]" in told
     assert set(matrix_table("Points", gone).texts()[2][1:]) == {"-"}
+
+
+def test_a_report_does_not_count_unknown_load_cases_as_stable() -> None:
+    """Of two load cases, one is stable, and the other has no equilibrium at its operating point."""
+    stable = CaseFactor("weight", REST, np.inf, "", "", "stable", 1e12)
+    unknown = CaseFactor("weight", "platform.x = 5 mm", np.nan, "", "", "no equilibrium found")
+    page = buckling_report(STAGE, CaseFactors((stable, unknown), 1.0, ""))
+    assert '<p class="headline fail">no buckling in 1 of 2 load cases and stroke ends</p>' in page

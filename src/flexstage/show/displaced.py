@@ -70,7 +70,6 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBucklin
 
     `after` is the post-buckling path of the load case with the lowest factor.
     """
-    least = found.least
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
     data = buckling_data(mechanism, known, after) if known else still_data(mechanism)
     sections = [
@@ -78,7 +77,7 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBucklin
         None if after is None else _beyond_section(after.stroke),
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
     ]
-    headline = Headline(to_typography(_buckling_text(found)), least is None or least.factor >= max(1.0, found.demand))
+    headline = Headline(to_typography(_buckling_text(found)), not found.warnings)
     caption = "The amplitude of the mode is arbitrary; choose it with the slider." if known else ""
     return _page(mechanism, "Buckling", found.provenance, headline, data, sections=sections, said=caption)
 
@@ -87,11 +86,12 @@ def _buckling_text(found: CaseFactors) -> str:
     least, open_ = found.least, found.least_bound
     if open_ is not None and not (least is not None and least.factor <= open_.bound):
         return f"{open_.load}, {open_.place}: stable up to {format_value(open_.bound, '1', 4)} times the load; not computed beyond"
+    known = f"{sum(not np.isnan(case.factor) for case in found.cases)} of {len(found.cases)} load cases and stroke ends"
     if least is None:
-        return f"no buckling in {len(found.cases)} load cases and stroke ends"
+        return f"no buckling in {known}"
     where = "" if least.place == REST else f", {least.place}"
     text = f"{least.load}{where}: buckles at {format_value(least.factor, '1', 4)} times the load"
-    return text if len(found.cases) == 1 else f"{text}, the lowest of {len(found.cases)} load cases and stroke ends"
+    return text if len(found.cases) == 1 else f"{text}, the lowest factor in {known}"
 
 
 def buckling_tables(found: CaseFactors, after: PostBuckling | None = None) -> list[Table | None]:
