@@ -14,7 +14,8 @@ from flexstage.analysis.workspace.force_workspace import force_workspace, input_
 from flexstage.base.finding import DesignError
 from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.registry import case
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, StructuralDamping
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Link, Mechanism, ModalDamping, StructuralDamping
 from flexstage.mechanism.restrict import restrict
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import modal_ratios
@@ -229,6 +230,21 @@ def test_yield_of_the_leaves_ends_the_reach():
     found = force_workspace(free, ideal(free), lumped(free))
     assert found.limited_by == ("yield stress",)
     assert found.held.item() == pytest.approx(0.5 * mm, rel=0.05)
+
+
+@pytest.mark.parametrize(("share", "left"), [(0.5, 0.5), (0.99, 0.01), (1.01, 0.0)])
+def test_a_permanent_load_near_yield_leaves_little_reach(share: float, left: float):
+    """A constant force along x bends the leaves by a share of the motion at yield; the rest of this motion remains, none beyond."""
+    mechanism = stage(replace(COIL, peak_current=1e3))
+    steel = replace(mechanism.materials["steel"], yield_stress=240e6)
+    leaf = mechanism.parts["leaf"].part
+    free = replace(mechanism, materials={"steel": steel}, parts={**mechanism.parts, "leaf": leaf}, gravity=(0.0, 0.0, 0.0))
+    reach = force_workspace(free, ideal(free), lumped(free)).held.item()
+    push = share * reach / static_gain(lumped(free), ("platform.x",), ("platform.fx",)).values.item()
+    at = tuple(expand(free).bodies[PLATFORM].reference.tolist())
+    pushed = replace(free, forces={"load": Force(PLATFORM, at, (push, 0.0, 0.0))})
+    found = force_workspace(pushed, ideal(pushed), lumped(pushed))
+    assert found.held.item() == pytest.approx(left * reach, rel=1e-9, abs=1e-15)
 
 
 def test_requirements_of_what_holding_takes():

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, stack
+from flexstage.base.number import Array, first_design, stack
 from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import LENGTH
@@ -138,13 +138,9 @@ def bounds(found: tuple[Outline, ...]) -> tuple[Array, Array, tuple[str, ...]]:
     reached = [outline.reach(_BOTH_WAYS.reshape(6, *(1,) * len(outline.designs), 3)) for outline in found]
     high = [stack([each[axis] for each in reached]) for axis in range(3)]
     low = [stack([-each[3 + axis] for each in reached]) for axis in range(3)]
-    ends = [np.argmin(_first(values)) for values in low] + [np.argmax(_first(values)) for values in high]
+    ends = [np.argmin(first_design(values, 1)) for values in low] + [np.argmax(first_design(values, 1)) for values in high]
     least, most = stack([np.min(values, axis=-1) for values in low]), stack([np.max(values, axis=-1) for values in high])
     return least, most, tuple(found[int(index)].name for index in ends)
-
-
-def _first(values: Array) -> Array:
-    return values.reshape(-1, values.shape[-1])[0]
 
 
 def _intrusions(result: tuple[Outline, ...], opening: Array) -> Iterator[Intrusion]:

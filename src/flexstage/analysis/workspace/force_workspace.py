@@ -30,10 +30,7 @@ from flexstage.parts.voice_coil import Coil
 from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, Frame, twist_transform
 
 _ROUNDING, _NONE = 1e-12, 1e-9
-
-_CONVERGED = 1e-14
-"""Relative change of the motion, and of its derivative, at which the iteration ends."""
-_STRESS_STEPS = 60
+_STRESS_STEPS, _CHORD = 20, 1e-6
 _YIELD = "yield stress"
 _LIMIT = 'Add e.g. peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
 
@@ -265,7 +262,7 @@ def _twist(assembly: Assembly, twists: Mapping[str, Array], body: str, frame: Fr
 def _stress(
     mechanism: Mechanism, assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array
 ) -> Iterator[tuple[str, Array]]:
-    """Motion at which a hinge yields, with permanent load: s <- s / use(s), use the largest share of yield."""
+    """Motion at which a hinge yields, with permanent load."""
     sized = sized_links(assembly)
     if not sized:
         return
@@ -277,18 +274,22 @@ def _stress(
 
 
 def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array:
-    """Least motions (..., f) in both directions at which the largest stress reaches yield, for wrenches (f, ..., w) per motion."""
+    """Least motions (..., f) in both directions at which the largest stress reaches yield, for wrenches (f, ..., w) per motion.
+
+    The share of yield is a convex function of the motion: Newton's steps from above, with slopes of short chords. The motion is 0 if the
+    permanent load alone reaches yield.
+    """
 
     def use(wrenches: Array) -> Array:
         return stress_use(sized, wrenches.reshape(*wrenches.shape[:-1], len(sized), len(FORCES)))
 
     both = np.stack([per, -per])
-    begin = use(both)
-    motion = 1.0 / np.where(begin == 0.0, 1e-30, begin)
+    rest, begin = use(dead), use(both)
+    motion = (1.0 + rest) / np.where(begin == 0.0, 1.0, begin)
     for _ in range(_STRESS_STEPS):
-        last, motion = motion, motion / use(dead + motion[..., None] * both)
-        if all(np.allclose(part(motion), part(last), rtol=_CONVERGED, atol=0.0, equal_nan=True) for part in (np.real, np.imag)):
-            break
+        used, more = (use(dead + share * motion[..., None] * both) for share in (1.0, 1.0 + _CHORD))
+        motion = motion * (1.0 - _CHORD * (used - 1.0) / np.where(np.real(more) > np.real(used), more - used, np.inf))
+    motion = np.where(np.real(rest) >= 1.0, 0.0, motion)
     least = np.minimum(*np.where(np.real(begin) > 0.0, motion, np.where(np.isnan(begin), np.nan, np.inf)))
     return np.moveaxis(least, 0, -1)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import SingleAxis
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, first_design
 from flexstage.base.units.quantity import LENGTH, RATIO
 from flexstage.base.units.unit import show
 from flexstage.mechanism.assembly.expand import PlacedLink, expand
@@ -157,12 +157,12 @@ def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
     ''
     """
     assembly = expand(mechanism)
-    moved = {name: _first(kinematics.strains[name]) for name in assembly.links}
+    moved = {name: np.real(first_design(kinematics.strains[name], 2)) for name in assembly.links}
     turn = [np.linalg.norm(each[3:], axis=0) for each in moved.values()]
     spans = {name: _span(assembly.links[name]) for name in moved}
     bend = [np.linalg.norm(each[1:3], axis=0) / spans[name] for name, each in moved.items()]
     closing = [_closing(link.part) for link in assembly.links.values()]
-    platform = _first(kinematics.motion)
+    platform = np.real(first_design(kinematics.motion, 2))
     return SmallMotion(
         coordinates=kinematics.coordinates,
         names=(*assembly.links, PLATFORM),
@@ -172,10 +172,6 @@ def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
         closes=(*(each < _SMALL for each in closing), False),
         span=np.array([*(each if np.isfinite(each) else 0.0 for each in spans.values()), 0.0]),
     )
-
-
-def _first(values: Array) -> Array:
-    return np.real(values[(0,) * (values.ndim - 2)])
 
 
 def _span(link: PlacedLink) -> float:
