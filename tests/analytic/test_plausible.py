@@ -101,6 +101,14 @@ def test_a_load_that_no_part_bears_is_told() -> None:
     assert "9.81 times the maximum load" in {each.where: each.what for each in caveats(stage).warnings}["pzt"]
 
 
+def test_a_preload_beyond_the_maximum_load_is_not_said_to_be_weight() -> None:
+    """The stack of the parallelogram carries no weight; its preload alone is 1.2 times a maximum load of 500 N."""
+    stage = fs.case("parallelogram")
+    stack = replace(stage.parts["stack"], maximum_load=500.0, preload=600.0)
+    (told,) = (each.what for each in caveats(replace(stage, parts={**stage.parts, "stack": stack})).warnings if each.where == "B")
+    assert told == "compression under preload, weight, payloads and forces is 1.2 times the maximum load of the stack"
+
+
 def test_no_ball_of_osmium_is_doubted() -> None:
     mass, density = 0.3, 22.5e3
     inertia = 0.4 * mass * (mass / density * 0.75 / math.pi) ** (2 / 3)

@@ -386,3 +386,23 @@ def test_an_unknown_critical_misalignment_is_stable_only_as_far_as_computed():
     one, none = (Matrix(np.full((1, 1), value), ("a",), ("rx",), (("rad",),)) for value in (0.01, np.nan))
     table = misalignment_tables(Misalignments(none, one, 1e-3, one, one, None))[0]
     assert table.notes == ("Each instance is misaligned individually, in its own frame. -: stable up to the values below.",)
+
+
+def test_an_unknown_safety_factor_names_the_hinges_without_a_limit():
+    """Not the hinge of least known factor."""
+    found = analyse(double_triangle(), whole=False)
+    stress = found.workspace.stress
+    limit = np.where(np.array(stress.links) == "B1/back", np.nan, stress.allowed)
+    less = replace(found, stress=None, workspace=replace(found.workspace, stress=replace(stress, limit=limit)))
+    (*_, text) = summary_tables(less, explained=False)
+    assert text.startswith(
+        "Smallest safety factor at the worst corner of all strokes from zero voltage: unknown, because B1/back has no stress limit.\n"
+    )
+
+
+def test_the_used_share_of_compression_is_said_to_include_the_preload():
+    """The largest force of the stack is without preload, its used share with it."""
+    bearing = analysed("parallelogram", Model.LUMPED).workspace.bearing
+    stack = case("parallelogram").parts["stack"]
+    assert bearing.usage == pytest.approx((bearing.max_force + stack.preload) / stack.maximum_load)
+    assert "The used share in compression includes the preload." in " ".join(result_table(bearing).notes)

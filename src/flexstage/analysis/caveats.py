@@ -324,7 +324,7 @@ def _compression_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[
     uses = np.real(share.usage(share.compression)).reshape(-1, len(share.actuators))[0]
     for name, use in zip(share.actuators, uses, strict=True):
         if use > 1.0:
-            what = f"compression under weight, payloads and forces is {use:.3g} times the maximum load of the stack"
+            what = f"compression under preload, weight, payloads and forces is {use:.3g} times the maximum load of the stack"
             yield Finding(name, what, "Check masses and forces, or use a stronger stack")
 
 

@@ -35,7 +35,8 @@ class LoadRange(Result):
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
         notes=(
-            "Strokes are from zero voltage; forces include permanent load, no preload. The limit of tension is preload plus tensile limit.",
+            "Strokes are from zero voltage; forces include permanent load, no preload. The used share in compression includes the preload.",
+            "The limit of tension is preload plus tensile limit.",
         ),
     )
 

@@ -249,9 +249,10 @@ def _strength_text(analysis: Analysis) -> str | None:
 def _weakest_text(found: HingeStress) -> str:
     """Smallest safety factor at the worst corner of some strokes, the hinge and the position in it."""
     place = f", {found.places[found.links.index(found.weakest)]}" if found.places else ""
-    safety = single(found.min_safety)
-    value = number(safety, 4) if np.isfinite(safety) else "unknown"
-    return f"Smallest safety factor at the worst corner {found.condition}: {value}, in {found.weakest}{place}."
+    value = f"{number(single(found.min_safety), 4)}, in {found.weakest}{place}"
+    if found.unknown:
+        value = f"unknown, because {', '.join(found.unknown[:3])} has no stress limit"
+    return f"Smallest safety factor at the worst corner {found.condition}: {value}."
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
