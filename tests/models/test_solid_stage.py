@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ import pytest
 from flexstage.analysis.assessment.judge import required_values as judged
 from flexstage.analysis.dynamics.modes import modes
 from flexstage.base.finding import DesignError
-from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Link, Mechanism
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.lumped import lumped
@@ -19,7 +21,9 @@ from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.geometry.cad import cad
 from flexstage.solid.fea.solver.assemble import linear_model
 from flexstage.solid.fea.solver.component import components
+from flexstage.solid.results.read import SolidRead
 from flexstage.solid.results.resolution import Resolution
+from flexstage.solid.results.stress import _yield
 from flexstage.solid.results.verification import required_values
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, spatial_rotation, turn_z, twist_transform
 from tests.laws.strategies import moved
@@ -187,3 +191,13 @@ def test_an_encased_stack_does_not_bend_without_its_casing() -> None:
     )
     theory, found = judged(stage)["frequency.1"], required_values(stage, Resolution(order=2)).values["frequency.1"]
     assert found == pytest.approx(theory, rel=0.03)
+
+
+def test_the_yield_stress_of_a_body_is_that_of_its_weakest_solid() -> None:
+    """Of a body of hard and soft solids the lower limit counts, in either sequence; without one of the limits it is unknown."""
+    solids = {name: SimpleNamespace(solid=SimpleNamespace(material=name)) for name in ("hard", "soft")}
+    limits = {"hard": replace(STEEL, yield_stress=1e9), "soft": replace(STEEL, yield_stress=1e8)}
+    assembly = cast("Assembly", SimpleNamespace(links={}, bodies={"block": SimpleNamespace(solids=solids)}))
+    for materials, expected in ((limits, 1e8), ({**limits, "soft": replace(STEEL, yield_stress=None)}, np.nan)):
+        read = cast("SolidRead", SimpleNamespace(mechanism=SimpleNamespace(materials=materials)))
+        np.testing.assert_equal(_yield(read, assembly, "block"), expected)

@@ -43,9 +43,16 @@ class Calibration(InNotebook):
 
     @property
     def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
-        """Relative differences (6,) between direct compliances by FEA and by beam theory, along and about x, y, z, by name of the part."""
+        """Relative differences (6,) between direct compliances by FEA and by beam theory, along and about x, y, z, by name of the part.
+
+        NaN for compliances that FEA cannot separate from the adjacent blocks, which are from beam theory.
+        """
         return {
-            name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form.part, hinge.form.material)) - 1.0
+            name: np.where(
+                hinge.separable,
+                np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form.part, hinge.form.material)) - 1.0,
+                np.nan,
+            )
             for name, hinge in self.hinges.items()
         }
 

@@ -13,7 +13,6 @@ from flexstage.base.number import Array
 from flexstage.base.record import INNER, Along, Heading
 from flexstage.base.units.quantity import PRESSURE, RATIO
 from flexstage.mechanism.assembly.expand import Assembly, expand
-from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.solver.assemble import Placed
 from flexstage.solid.fea.solver.surface import element_coordinates, piece_vertices, stresses, von_mises
@@ -29,8 +28,8 @@ class LinkStress(InNotebook):
     """Highest von Mises stress (L,) [Pa] on the surface of links and bodies, except stacks, over some load cases.
 
     `case` (L,) is the number of the load case with this stress. `yield_stress` (L,) [Pa] is the yield stress, or the fatigue limit or
-    allowable stress if lower (NaN: unknown). At sharp inner corners the true stress is infinite, and the computed stress grows with the
-    resolution.
+    allowable stress if lower (NaN: unknown); for a body, the lowest of its solids. At sharp inner corners the true stress is infinite, and
+    the computed stress grows with the resolution.
     """
 
     names: tuple[str, ...]
@@ -102,9 +101,7 @@ def _is_stack(assembly: Assembly, name: str) -> bool:
 
 
 def _yield(read: SolidRead, assembly: Assembly, name: str) -> float:
-    material: Material | None
-    if name in assembly.links:
-        material = assembly.links[name].material
-    else:
-        material = read.mechanism.materials[next(iter(assembly.bodies[name].solids.values())).solid.material]
-    return np.nan if material is None or material.limit is None else float(np.real(material.limit))
+    """The limit of a link, or the lowest one of a body's solids."""
+    link, known = assembly.links.get(name), read.mechanism.materials
+    materials = [known[each.solid.material] for each in assembly.bodies[name].solids.values()] if link is None else [link.material]
+    return float(np.min([np.nan if each is None or each.limit is None else np.real(each.limit) for each in materials]))

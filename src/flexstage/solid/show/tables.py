@@ -153,4 +153,5 @@ def calibration_table(found: Calibration) -> Table:
         for name, values in found.over_beam_theory.items()
     ]
     heads = ["part", "links", *(Column(axis) for axis in _AXES), Column("FEA error")]
-    return make_table("Difference in compliance between FEA and beam theory", heads, rows, notes=["Positive: FEA is softer."])
+    note = "Positive: FEA is softer. - %: from beam theory, because FEA cannot separate it from the adjacent blocks."
+    return make_table("Difference in compliance between FEA and beam theory", heads, rows, notes=[note])

@@ -177,7 +177,7 @@ def hinge_compliance(
         freedoms=last.freedoms,
         elements=last.elements,
         order=last.order,
-        finding=None if error <= required.error else _not_reached(part, error, required),
+        finding=None if error <= required.error else _not_reached(part, error, required, last.freedoms),
     )
 
 
@@ -344,12 +344,11 @@ def _require_symmetric(part: Shaped, law: Array) -> None:
         )
 
 
-def _not_reached(part: Shaped, error: float, accuracy: Accuracy) -> Finding:
+def _not_reached(part: Shaped, error: float, accuracy: Accuracy, freedoms: int) -> Finding:
     if not np.isfinite(error):
         return Finding(_label(part), f"the error of its compliance matrix is unknown: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _label(part),
-        f"the error of its compliance matrix with {accuracy.freedoms} DOFs is {100.0 * error:.2g} %, "
-        f"but {100.0 * accuracy.error:.2g} % is required",
+        f"the error of its compliance matrix with {freedoms} DOFs is {100.0 * error:.2g} %, but {100.0 * accuracy.error:.2g} % is required",
         "Allow more DOFs or a larger error",
     )
