@@ -16,12 +16,14 @@ from flexstage.base.storage.document import plain
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.addresses.address import addresses, get, set_values
 from flexstage.mechanism.checks import check
+from flexstage.studies.optimisation.result import Binding
 from flexstage.studies.optimisation.search.front import pareto_front
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.search.problem import Problem, Side
 from flexstage.studies.optimisation.search.quadratic import quadratic
 from flexstage.studies.optimisation.search.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import setting
+from flexstage.studies.optimisation.show.tables import _notes
 from flexstage.studies.optimisation.values import Point, Scalars, Values
 from tests.conftest import FULL
 from tests.laws.optima import BLADES, POST, TRIPOD, case_of, post_variables, study_of
@@ -293,6 +295,36 @@ def test_steps_that_leave_no_design_are_said_to(tmp_path):
     assert found.rounded.point is None
     assert "none of the 4 nearest designs on the steps of the variables is feasible; use finer steps" in found.rounded.reason
     assert found.final is found.point
+
+
+def test_a_range_without_a_multiple_of_the_step_leaves_no_rounded_design(tmp_path):
+    """Between 1 mm and 1.7 mm is no multiple of 0.9 mm."""
+    text = post_variables(', step = "0.9 mm"').replace('"8 mm"', '"1.7 mm"') + '[optimise]\nmaximise = "f1"\nstarts = 1'
+    study, wanted = study_of(tmp_path, POST.replace('"5 mm"', '"1.5 mm"').replace('"2 mm"', '"1.5 mm"'), text)
+    found = optimise(study, wanted)
+    assert found.rounded.point is None
+    assert found.on_steps is None
+
+
+def test_one_per_cent_of_a_limit_of_zero_brings_no_gain():
+    """A range that begins at 0 mm: 1 % of its end is nothing, not 10 mm."""
+    assert Binding("at", 0.0, "m", 100.0, of_range=True, objective_unit="Hz").gain == 0.0
+    assert Binding("at", -0.02, "m", 100.0, of_range=True, objective_unit="Hz").gain == pytest.approx(0.02)
+
+
+def test_variables_without_effect_at_the_nominal_design_may_have_one_elsewhere(tmp_path):
+    """A cube centred on its post: a small offset to either side does not change the lowest frequency, a larger one does."""
+    text = post_variables().replace(
+        "[responses]", 'aside = { address = "bodies.platform.solids.cube.at.y", from = "-9 mm", to = "9 mm" }\n[responses]'
+    )
+    study, wanted = study_of(tmp_path, POST, text + '[optimise]\nmaximise = "f1"\nstarts = 1')
+    found = setting(study, wanted)
+    assert found.idle == ("aside",)
+    shares = np.array([found.before.shares, found.before.shares])
+    shares[1, -1] = 1.0
+    centred, aside = (point.values[0] for point in found.values.evaluate(shares))
+    assert aside < 0.999 * centred
+    assert "at the nominal design: aside" in _notes(interrupted=False, idle=found.idle)[0]
 
 
 def test_fronts_are_undominated_and_end_at_the_single_optima(tmp_path):

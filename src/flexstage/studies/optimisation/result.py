@@ -50,7 +50,7 @@ class Binding:
     @property
     def gain(self) -> Annotated[float, INNER, UnitIn("objective_unit"), Heading("gain for 1 %", digits=3)]:
         """Improvement of the objective if the limit is relaxed by 1 % of its value."""
-        return abs(self.price) * (abs(self.limit) or 1.0) * 0.01
+        return abs(self.price * self.limit) * 0.01
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Start:
     """Search from one start: first and last design (0 to 1 in each range), final objective `value` [SI] and largest relative `violation`.
 
     `history` (k, 2) contains the objective and the largest violation of each accepted design. `agrees`: the final design is feasible, and
-    its objective differs from the best one by at most 0.01 %.
+    its objective differs from the best one by at most 0.01 % of the best or nominal objective, whichever is larger.
     """
 
     TABLE: ClassVar[Layout] = Layout("Starts", "value violation evaluated end agrees", head="start")
@@ -155,8 +155,8 @@ class Contradiction:
 class Outcome(InNotebook):
     """Results that all optimisations have in common. `before` is the nominal design. `contradictions` explain why no design is feasible.
 
-    `idle` names variables without effect on any requested measure. `evaluated` is the number of evaluated designs. `interrupted`: the
-    search was interrupted, and the results are the best so far.
+    `idle` names variables without effect on any requested measure at the nominal design. `evaluated` is the number of evaluated designs.
+    `interrupted`: the search was interrupted, and the results are the best so far.
     """
 
     study: Annotated[Study, INNER]

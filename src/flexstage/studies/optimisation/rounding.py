@@ -60,7 +60,7 @@ def _neighbours(setting: Setting, point: Point, stepped: list[int]) -> Array:
         shares = point.shares.copy()
         shares[stepped] = picked
         rows.append(shares)
-    return np.array(rows)
+    return np.reshape(rows, (-1, len(point.shares)))
 
 
 def _multiples(setting: Setting, point: Point, number: int) -> list[float]:
@@ -70,7 +70,7 @@ def _multiples(setting: Setting, point: Point, number: int) -> list[float]:
     count = float(np.real(variable.at(np.asarray(point.shares[number])))) / variable.step
     whole = {int(np.floor(count + 1e-6)), int(np.ceil(count - 1e-6))}
     found = [share_of(variable, each * variable.step) for each in sorted(whole, key=lambda each: abs(each - count))]
-    return [share for share in found if -_EDGE <= share <= 1.0 + _EDGE] or [float(point.shares[number])]
+    return [share for share in found if -_EDGE <= share <= 1.0 + _EDGE]
 
 
 def _rank(problem: Problem, point: Point, neighbours: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.assessment.requirements import Sense
 from flexstage.studies.optimisation.result import Binding
 from flexstage.studies.optimisation.search.problem import Problem, lagrangian
-from flexstage.studies.optimisation.search.step import Bounds, step
+from flexstage.studies.optimisation.search.step import Bounds, Step, step
 from flexstage.studies.optimisation.setting import Setting
 from flexstage.studies.optimisation.values import Point
 
@@ -47,14 +47,13 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
                     ),
                 )
             )
-    found += [(abs(slope), each) for slope, each in _ends(setting, problem, point, back)]
+    found += [(abs(slope), each) for slope, each in _ends(setting, problem, point, model, back)]
     return tuple(each for _, each in sorted(found, key=lambda item: -item[0]))
 
 
-def _ends(setting: Setting, problem: Problem, point: Point, back: float) -> Iterator[tuple[float, Binding]]:
+def _ends(setting: Setting, problem: Problem, point: Point, model: Step, back: float) -> Iterator[tuple[float, Binding]]:
     """Range ends at which the Lagrangian still decreases outward."""
-    size, unit = len(point.shares), setting.definition.objectives[0].measure.quantity.si
-    model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))
+    unit = setting.definition.objectives[0].measure.quantity.si
     slopes = lagrangian(problem, point, model.weights)
     assert slopes is not None  # noqa: S101  of one design, pieces correspond
     for number, variable in enumerate(setting.study.variables):

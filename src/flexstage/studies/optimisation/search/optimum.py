@@ -137,8 +137,11 @@ def _start(set_up: Setting, begin: Array, trace: Trace, best: Point | None) -> S
         )
     ended = best_of(problem, [trace]) or trace.point
     history = np.array([[point.values[0], problem.violation(point)] for point in trace.history])
-    good = best is not None and problem.excess(ended) <= SPARE
-    agrees = good and best is not None and problem.worth(ended) - problem.worth(best) <= _ALIKE * max(1.0, abs(problem.worth(best)))
+    agrees = (
+        best is not None
+        and problem.excess(ended) <= SPARE
+        and problem.worth(ended) - problem.worth(best) <= _ALIKE * max(1.0, abs(problem.worth(best)))
+    )
     return Start(
         begin, ended.shares, float(ended.values[0]), problem.violation(ended), trace.evaluated, trace.converged, history, agrees, unit
     )

@@ -55,7 +55,7 @@ class Problem:
 
     def excess(self, point: Point) -> float:
         """Return the largest constraint value c of the limits. A positive value is a violation; without limits the value is 0."""
-        return max((side.at(point) for side in self.limits), default=0.0) if self.limits else 0.0
+        return max((side.at(point) for side in self.limits), default=0.0)
 
     def violation(self, point: Point) -> float:
         """Return the largest violation, which is 0 for a feasible design."""

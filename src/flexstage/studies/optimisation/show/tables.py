@@ -39,7 +39,7 @@ def front_tables(found: Front) -> list[Table]:
 
 def _notes(*, interrupted: bool, idle: tuple[str, ...]) -> list[str]:
     notes = ["The search was interrupted; these are the best results so far."] if interrupted else []
-    return [*notes, *([f"Variables without effect: {', '.join(idle)}."] if idle else [])]
+    return [*notes, *([f"Variables without effect at the nominal design: {', '.join(idle)}."] if idle else [])]
 
 
 def _value_texts(study: Study, values: Array) -> list[str]:
