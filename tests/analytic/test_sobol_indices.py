@@ -6,6 +6,7 @@ import pytest
 from flexstage.studies.sweeps.effects import Effects, effects
 from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.sweeps.plan import Plan, Sampling, shares
+from flexstage.studies.sweeps.show.tables import share_table
 
 A, B = 7.0, 0.1
 ALONE = np.array([0.5 * (1.0 + B * np.pi**4 / 5.0) ** 2, A**2 / 8.0, 0.0])
@@ -63,3 +64,12 @@ def test_correlation_ratios_are_freed_of_chance_as_in_one_way_analysis_of_varian
     within = sum(np.sum((each - np.mean(each)) ** 2) for each in groups) / (len(at) - bins)
     assert bins > 2
     assert found.first[0, 0] == pytest.approx(1.0 - within / np.var(value, ddof=1), rel=1e-12)
+
+
+def test_what_a_variable_leaves_unexplained_is_no_interaction_alone():
+    """A line over two bins is a step: three quarters of its variance; the note on the remainder names variation within bins."""
+    plan = Plan(Sampling.SOBOL, 1, count=16)
+    at = shares(plan, 0, 16)
+    found = effects(Results(np.arange(16), at, at, {}, (("x",), ("y",)), (("m",), ("m",)), 16, {}, ""), plan)
+    assert found.first[0, 0] == pytest.approx(0.75, abs=0.05)
+    assert "variation within bins" in share_table(found).notes[0]

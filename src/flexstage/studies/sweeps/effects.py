@@ -132,7 +132,7 @@ def _ratios(bins: list[Array], values: Array, *, grid: bool) -> Array:
     for number, group in enumerate(bins):
         counts = np.bincount(group)
         sums = np.stack([np.bincount(group, weights=column) for column in values.T], axis=-1)
-        between = np.sum(counts[:, None] * (sums / counts[:, None] - values.mean(axis=0)) ** 2, axis=0) / max(len(values), 1)
+        between = np.sum(counts[:, None] * (sums / counts[:, None] - values.mean(axis=0)) ** 2, axis=0) / len(values)
         share = between / spread
         chance = 0.0 if grid or len(values) < 2 else (len(counts) - 1) / (len(values) - 1)
         result[number] = np.maximum((share - chance) / (1.0 - chance), 0.0) if chance < 1.0 and (grid or len(counts) > 1) else np.nan

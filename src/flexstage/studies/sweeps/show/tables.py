@@ -77,7 +77,11 @@ def share_table(found: Effects) -> Table:
             cells += [] if found.total is None else [share_cell(float(found.total[row, column]))]
         rows.append(cells)
     note = "First order: fraction of the response's variance due to the variable alone. "
-    note += "Total: due to the variable and its interactions." if found.total is not None else "The remainder is due to interactions."
+    note += (
+        "Total: due to the variable and its interactions."
+        if found.total is not None
+        else "The remainder is due to interactions, and to variation within bins."
+    )
     return make_table(
         "Variance contributions", columns, rows, notes=[note, f"Method: {found.method}, with {found.used} designs.", *_error_note(found, 0)]
     )
