@@ -28,7 +28,7 @@ from flexstage.studies.synthesis.pairs import CandidatePair, shortfalls
 from flexstage.studies.synthesis.search import Answer, FailedPair, search
 from flexstage.studies.synthesis.show.report import answer_report
 from flexstage.studies.synthesis.show.tables import answer_tables
-from flexstage.studies.synthesis.specification import ActuatorTable, Specification, loads_specification
+from flexstage.studies.synthesis.specification import EXAMPLE, ActuatorTable, Specification, loads_specification
 from flexstage.studies.tolerances.file import loads_tolerance
 from tests.conftest import FULL
 
@@ -545,3 +545,12 @@ def test_rotations_need_an_inertia() -> None:
     )
     with pytest.raises(DesignError, match="no moment of inertia about an axis"):
         loads_specification(text)
+
+
+def test_a_yield_below_all_and_the_first_frequency_are_printed() -> None:
+    """One stage of 512 that fails is not 100 %; the frequency with elastic bodies is the first one, also if `unwanted` is listed before."""
+    values = {"frequency.unwanted": 900.0, "frequency.1": 100.0, "envelope.x": 0.1, "envelope.y": 0.1, "envelope.z": 0.1}
+    one = Answer("guide", "stack", 100.0, "Hz", values, (), None, 1, 1, 1, (), elastic=values, manufactured=511 / 512)
+    spec = loads_specification(EXAMPLE)
+    row = next(answer_tables(answers.Answers(spec, (one,), (), ()))).texts()[1]
+    assert row[4:6] == ["100 Hz", "99.8 %"]

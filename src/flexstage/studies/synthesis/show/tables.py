@@ -76,7 +76,7 @@ def _answer_table(found: Answers) -> Table:
     notes = [
         "Efficiency: stroke energy that the payload alone needs for the first frequency, relative to that of the actuators; at most 100 %.",
         "Warnings: number of warnings that flexstage check prints.",
-        "Elastic bodies: the frequency with bodies whose flexibility is estimated from their outlines.",
+        "Elastic bodies: first natural frequency (unwanted one, if only this is required), with flexibility estimated from outlines.",
         *(each.note for each in more),
         *(f"{each.pair} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
@@ -110,7 +110,7 @@ _MORE = (
     _Extra(
         "yield",
         "Yield: fraction of stages that meet all requirements if dimensions vary within the tolerance of the specification.",
-        lambda answer: None if answer.manufactured is None else f"{100.0 * answer.manufactured:.0f} %",
+        lambda answer: None if answer.manufactured is None else f"{100.0 * answer.manufactured:.3g} %",
     ),
     _Extra(
         "loop",
@@ -125,7 +125,7 @@ def _front_cells(answer: Answer, point: FrontPoint) -> tuple[str, str]:
 
 
 def _frequency(values: Mapping[str, float]) -> str | None:
-    found = next((value for key, value in values.items() if key in ("frequency.1", "frequency.unwanted")), None)
+    found = next((values[key] for key in ("frequency.1", "frequency.unwanted") if key in values), None)
     return None if found is None else format_value(found, "Hz", _DIGITS)
 
 
