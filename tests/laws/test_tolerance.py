@@ -21,6 +21,7 @@ from flexstage.studies.tolerances.distribution import Distribution, Shape
 from flexstage.studies.tolerances.file import loads_tolerance
 from flexstage.studies.tolerances.run import Toleranced
 from flexstage.studies.tolerances.show.figures import distributions_figure
+from flexstage.studies.tolerances.show.tables import allowance_table, crosstalk_table
 from flexstage.studies.tolerances.slopes import Slopes, slopes
 from flexstage.studies.tolerances.summary import binomial, summary
 
@@ -330,7 +331,7 @@ def test_distributions_have_the_deviation_they_say(shape):
     values = shape.quantile((np.arange(20000) + 0.5) / 20000)
     assert values.mean() == pytest.approx(shape.offset, abs=1e-9)
     assert values.std() == pytest.approx(shape.deviation, rel=2e-3)
-    assert shape.largest is None or np.abs(values).max() <= shape.largest
+    assert shape.ends is None or shape.ends[0] <= values.min() <= values.max() <= shape.ends[1]
     assert shape.times(3.0).deviation == pytest.approx(3.0 * shape.deviation, rel=1e-12)
 
 
@@ -367,6 +368,66 @@ def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
     assert found.failed == len(results.failures)
     assert found.together.copies == 32
     assert found.together.kept <= 32 - found.failed
+
+
+def test_a_response_with_the_name_of_a_requirement_does_not_replace_its_measure(guide):
+    """The limit on the mass is judged on the mass, also if the response `mass` is a stiffness; equal measures have one column."""
+    text = 'limits.mass = "at least 100 kg"\nlimits."stiffness.x" = "at least 1 N/mm"\nresponses."stiffness.x" = "stiffness.x"\n'
+    study = guide(text + 'responses.mass = "stiffness.x"\nscatter.wire = { address = "leaf.thickness", normal = "1 um" }', copies=32)
+    found = summary(study, told(study), slopes(study))
+    assert [(line.column, line.kept.share) for line in found.lines] == [("limit mass", 0.0), ("stiffness.x", 1.0)]
+    assert found.lines[0].nominal == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.parametrize(("interval", "known"), [('["-9.8 um", "-9.6 um"]', False), ('["-9.8 um", "9.8 um"]', True)])
+def test_shares_of_the_margin_are_unknown_for_asymmetric_intervals(guide, interval, known):
+    """Thickness falls by 9.7 um +- 0.1 um: little of the variance, but most of the change; a tenfold deviation misses the limit."""
+    study = guide(
+        f'limits."stiffness.x" = "at least 4 N/mm"\n[scatter]\nwire = {{ address = "leaf.thickness", interval = {interval} }}\n'
+        'young = { address = "materials.steel.young", uniform = "2 %" }',
+        copies=64,
+    )
+    slope, results = slopes(study), told(study)
+    found = Toleranced(study, results, slope, statistics := summary(study, results, slope), allowance(study, results, slope, statistics))
+    allowed = found.allowance
+    assert np.isfinite([*allowed.alone, *allowed.equal]).tolist() == 4 * [known]
+    assert 1.0 < allowed.together < 10.0
+    assert allowance_table(found).texts()[1][2].startswith("-") is not known
+    assert np.all(piece(study.scale((allowed.together, allowed.together)), 0, 64).responses[:, 0] >= 0.98 * 4e3)
+
+
+def test_failed_samples_that_leave_no_tolerance_are_no_violation_of_the_nominal_design(guide):
+    limit = 'limits."stiffness.x" = "at least 1 N/mm"\n'
+    study = guide(f'{limit}scatter.wire = {{ address = "leaf.thickness", normal = "30 %", within = "90 %" }}', copies=1024)
+    slope, results = slopes(study), told(study)
+    results.responses[:20] = np.nan
+    found = Toleranced(study, results, slope, statistics := summary(study, results, slope), allowance(study, results, slope, statistics))
+    assert found.allowance.together == 0.0 < found.allowance.margin[0]
+    assert (
+        "stiffness.x leaves no tolerance: the nominal design has no margin to it, or too many samples" in allowance_table(found).notes[-1]
+    )
+
+
+def test_unknown_crosstalk_is_not_shown_as_zero():
+    study = loads_tolerance("""
+format = "flexstage study 1"
+case = "parallelogram"
+tolerance = { copies = 2 }
+scatter.wire = { address = "hinges.thickness", normal = "1 um" }
+""")
+    results, slope = told(study), slopes(study)
+    results.responses[:] = np.nan
+    found = Toleranced(study, results, slope, summary(study, results, slope), None)
+    assert {row[1] for row in crosstalk_table(found, found.crosstalk[0]).texts()[1:7]} == {"-"}
+
+
+def test_one_sided_intervals_reach_one_side(guide):
+    """Poisson's ratio of 0.3 less up to 0.25 stays within its bounds; 0.3 more does not."""
+    entry = 'scatter.nu = {{ address = "materials.steel.poisson", interval = ["{}", "{}"] }}'
+    (deviation,) = guide(entry.format(-0.25, 0)).deviations
+    assert (deviation.low, deviation.high) == (-0.25, 0.0)
+    with pytest.raises(DesignError, match=r"is 0.3, and deviations reach 0.3: it would be 0.6, and must be"):
+        guide(entry.format(0, 0.3))
 
 
 BAD = {

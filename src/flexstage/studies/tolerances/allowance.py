@@ -13,7 +13,6 @@ from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.tolerances.definition import Tolerance
-from flexstage.studies.tolerances.distribution import Shape
 from flexstage.studies.tolerances.slopes import Slopes
 from flexstage.studies.tolerances.summary import Line, Summary, Yield, binomial, squares_alone
 
@@ -26,7 +25,7 @@ class AllowedEntry:
     """Allowable factors on the deviations of one entry. The factors are infinite if these deviations have no effect.
 
     The factor `alone` is valid if the other entries are unchanged; the requirement `decided_by` limits this factor. For `equal_shares`, all
-    entries change, and each uses the same fraction of the margin.
+    entries change, and each uses the same fraction of the margin. Both are NaN (unknown) if the interval of an entry is asymmetric.
     """
 
     name: str
@@ -41,10 +40,11 @@ class Allowance:
 
     `names` are the names of the m entries, `lines` those of the l requirements. `reach` (l,) is the change of a requirement's value towards
     its limit; the fraction `wanted` of the samples does not exceed this change. `share` (m, l) is the fraction of the square of `reach` due
-    to each entry. `together` is the factor on all deviations, limited by the requirement `binding`; it is 0 if the nominal design fails.
-    `alone` (m,) are factors on single entries with the others unchanged; the requirements `binds` (m,) limit these factors. `equal` (m,)
-    are simultaneous factors on all entries, for which each entry uses the same fraction of the margin. A factor is infinite if the entry
-    has no effect. `then` is the yield if the changes of all responses in the sample are multiplied by `together`.
+    to each entry. `together` is the factor on all deviations, limited by the requirement `binding`; it is 0 if the nominal design has no
+    margin or too many samples fail. `alone` (m,) are factors on single entries with the others unchanged; the requirements `binds` (m,)
+    limit these factors. `equal` (m,) are simultaneous factors on all entries, for which each entry uses the same fraction of the margin. A
+    factor is infinite if the entry has no effect. `alone` and `equal` are NaN (unknown) if a distribution has a mean other than zero
+    (asymmetric interval). `then` is the yield if the changes of all responses in the sample are multiplied by `together`.
     """
 
     wanted: Annotated[float, Called("yield")]
@@ -88,16 +88,16 @@ def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary)
     reach, shares = [], []
     for line, column, smooth in zip(found.lines, columns, by_slope, strict=True):
         reach.append(_linear_reach(study, line, slope.gradient[column]) if smooth else _reach(study, line, values[:, column]))
-        parts = found.spread.by_slope[:, column] if smooth else squares[:, column]
-        shares.append(_normalise(parts))
+        shares.append(_normalise((found.spread.by_slope if smooth else squares)[:, column]))
     margin = np.array([line.margin for line in found.lines])
-    share = np.stack(shares, axis=-1) if shares else np.zeros((len(study.scatters), 0))
+    share = np.reshape(shares, (-1, len(study.scatters))).T
     room = _margin_ratio(margin, np.array(reach))
     labels = tuple(line.column for line in found.lines)
+    unknown = np.nan if any(each.distribution.offset for each in study.scatters) else 0.0
     left = room**2 - (1.0 - share)
     with np.errstate(divide="ignore", invalid="ignore"):
-        alone = np.where(share > _NEGLIGIBLE, np.sqrt(np.maximum(left, 0.0) / share), np.inf)
-        equal = np.where(share > _NEGLIGIBLE, room / np.sqrt(len(share) * share), np.inf)
+        alone = np.where(share > _NEGLIGIBLE, np.sqrt(np.maximum(left, 0.0) / share), np.inf) + unknown
+        equal = np.where(share > _NEGLIGIBLE, room / np.sqrt(len(share) * share), np.inf) + unknown
     together = float(np.min(room, initial=np.inf))
     return Allowance(
         wanted=study.wanted,
@@ -108,16 +108,16 @@ def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary)
         by_slope=by_slope,
         share=share,
         together=together,
-        binding=labels[int(np.argmin(room))] if labels and np.isfinite(together) else "",
+        binding=labels[np.argmin(room)] if np.isfinite(together) else "",
         alone=np.min(alone, axis=1, initial=np.inf),
-        binds=tuple(labels[int(np.argmin(row))] if labels and np.isfinite(np.min(row)) else "" for row in alone),
+        binds=tuple(labels[np.argmin(row)] if labels and np.isfinite(np.min(row)) else "" for row in alone),
         equal=np.min(equal, axis=1, initial=np.inf),
         then=_scaled_yield(found.lines, together, values[:, columns]),
     )
 
 
 def _margin_ratio(margin: Array, reach: Array) -> Array:
-    """Margins over changes; zero if the nominal design fails, infinite without an effect."""
+    """Margins over changes; zero without a margin or with infinite changes (failed samples), infinite without an effect."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(margin <= 0.0, 0.0, np.where(reach > 0.0, margin / reach, np.inf))
 
@@ -141,13 +141,11 @@ def _reach(study: Tolerance, line: Line, values: Array) -> float:
 def _linear_reach(study: Tolerance, line: Line, gradient: Array) -> float:
     """The same for a response that is linear in the deviations: exact for normal ones, else by sampling of their distributions."""
     deviations = study.deviations
-    if all(each.distribution.shape is Shape.NORMAL and each.bounded is None for each in deviations):
+    if not any(each.bounded for each in deviations):
         size = np.array([each.deviation for each in deviations])
         return float(scipy.special.ndtri(study.wanted) * np.linalg.norm(gradient * size))
-    at = np.random.default_rng(0).random((_DRAWS, len(deviations)))
-    worse = -_sign(line) * sum(
-        slope * each.at(at[:, number]) for number, (each, slope) in enumerate(zip(deviations, gradient, strict=True))
-    )
+    at = np.random.default_rng(0).random((_DRAWS, len(deviations))).T
+    worse = -_sign(line) * sum(slope * each.at(row) for each, slope, row in zip(deviations, gradient, at, strict=True))
     return float(np.quantile(worse, study.wanted))
 
 

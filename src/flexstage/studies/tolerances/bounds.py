@@ -33,29 +33,30 @@ def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tupl
         node = locate(design, target.address).node
         if not isinstance(node, NumberNode) or node.bound is None:
             continue
-        reach = _reach(target, variables)
+        low, high = _reach(target, variables)
         bound = node.bound
-        if bound.low < target.nominal - reach and target.nominal + reach < bound.high:
+        if bound.low < target.nominal + low and target.nominal + high < bound.high:
             continue
         owners = tuple(dict.fromkeys(variables[number].scatter for number, _ in target.factors))
         if owners in reported:
             continue
         reported.add(owners)
-        worst = target.nominal - reach if target.nominal - reach <= bound.low else target.nominal + reach
+        worst = low if target.nominal + low <= bound.low else high
         quantity = quantity_of(design, target.address)
-        is_, far, there = (show(value, quantity, digits=4) for value in (target.nominal, reach, worst))
-        how = "" if all(variables[number].bounded is not None for number, _ in target.factors) else f" ({REACH:g} standard deviations)"
+        is_, far, there = (show(value, quantity, digits=4) for value in (target.nominal, abs(worst), target.nominal + worst))
+        how = "" if all(variables[number].bounded for number, _ in target.factors) else f" ({REACH:g} standard deviations)"
         what = f"{target.address} is {is_}, and deviations reach {far}{how}: it would be {there}, and must be {bound.text()}"
         yield Finding(f"scatter.{', '.join(owners)}", what, 'Use a smaller deviation, or truncate it with within = "..."')
 
 
-def _reach(target: Target, variables: tuple[Deviation, ...]) -> float:
-    """Common reach of deviations: the sum of bounded ones, plus five standard deviations of the sum of the others."""
-    bounded, spread = 0.0, 0.0
+def _reach(target: Target, variables: tuple[Deviation, ...]) -> tuple[float, float]:
+    """Lowest and highest deviation: the sums of bounded ones, with five standard deviations of the sum of the others."""
+    low = high = spread = 0.0
     for number, factor in target.factors:
         variable = variables[number]
-        if variable.bounded is not None:
-            bounded += abs(factor) * variable.bounded
+        if variable.bounded:
+            below, above = sorted((factor * variable.low, factor * variable.high))
+            low, high = low + below, high + above
         else:
             spread = hypot(spread, factor * variable.deviation)
-    return bounded + REACH * spread
+    return low - REACH * spread, high + REACH * spread

@@ -96,8 +96,9 @@ class Tolerance(Study):
 
     @property
     def lines(self) -> tuple[tuple[str, Requirement], ...]:
-        """The requirements, with the column of each measure."""
-        return tuple((line_name(each), each) for each in self.limits)
+        """The requirements, with the column of each measure: `limit NAME` if a response with this name is another measure."""
+        named = ((line_name(each), each) for each in self.limits)
+        return tuple((name if line_name(self.responses.get(name, each)) == name else f"limit {name}", each) for name, each in named)
 
     @cached_property
     def measures(self) -> Mapping[str, Measure]:
@@ -159,7 +160,7 @@ class Tolerance(Study):
         return replace(self, scatters=scatters, variables=tuple(one for each in scatters for one in each.variables()))
 
 
-def line_name(line: Requirement) -> str:
+def line_name(line: Measure) -> str:
     """Return the column name of a requirement's measure.
 
     >>> from flexstage.analysis.assessment.requirements import requirements

@@ -63,14 +63,14 @@ class Distribution:
         return float(self.size * np.sqrt(1.0 - 2.0 * edge * density / (2.0 * scipy.special.ndtr(edge) - 1.0)))
 
     @property
-    def largest(self) -> float | None:
-        """The largest absolute deviation, if it is bounded.
+    def ends(self) -> tuple[float, float] | None:
+        """The smallest and largest deviation, if bounded.
 
-        >>> Distribution(Shape.NORMAL, 1.0).largest is None, Distribution(Shape.UNIFORM, 3.0, offset=2.0).largest
-        (True, 5.0)
+        >>> Distribution(Shape.NORMAL, 1.0).ends is None, Distribution(Shape.UNIFORM, 3.0, offset=2.0).ends
+        (True, (-1.0, 5.0))
         """
         half = self.size if self.shape is Shape.UNIFORM else self.within
-        return None if half is None else half + abs(self.offset)
+        return None if half is None else (self.offset - half, self.offset + half)
 
     def times(self, factor: float) -> Distribution:
         """Return the distribution with all deviations multiplied by a factor.

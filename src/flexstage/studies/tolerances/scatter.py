@@ -44,18 +44,14 @@ class Scatter:
 
     def variables(self) -> tuple[Deviation, ...]:
         """Return the entry's variables, one for each member. With several, each name ends with the address or the vector component."""
-        low, high = -self._reach, self._reach
+        reach = REACH * self.distribution.size
+        low, high = self.distribution.ends or (-reach, reach)
         several = len(self.members) > 1
         names = [f"{self.name}.{self._label(member)}" if several else self.name for member in self.members]
         return tuple(
             Deviation(name, member, self.quantity, low, high, relative=self.relative, distribution=self.distribution, scatter=self.name)
             for name, member in zip(names, self.members, strict=True)
         )
-
-    @property
-    def _reach(self) -> float:
-        bounded = self.distribution.largest
-        return REACH * self.distribution.size if bounded is None else bounded
 
     def _label(self, member: tuple[str, ...]) -> str:
         """Identifier of a member: the instance, or the component of common scatter."""
@@ -91,9 +87,9 @@ class Deviation(Variable):
         return self.distribution.deviation
 
     @property
-    def bounded(self) -> float | None:
-        """The largest deviation, if it is bounded."""
-        return self.distribution.largest
+    def bounded(self) -> bool:
+        """Whether deviations are between `low` and `high`."""
+        return self.distribution.ends is not None
 
 
 @dataclass(frozen=True)

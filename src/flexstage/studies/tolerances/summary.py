@@ -226,8 +226,7 @@ def _spread(study: Tolerance, results: Results, slope: Slopes, values: Array) ->
     constant = np.ptp(values, axis=0) <= ROUNDING * np.max(np.abs(values), axis=0) if len(values) else np.zeros(len(linear), dtype=bool)
     deviation = np.where(constant, 0.0, np.std(values, axis=0, ddof=1)) if len(values) > 1 else np.full(len(linear), np.nan)
     allowed = max(_ROUGH, _ERRORS / np.sqrt(2.0 * max(len(values), 1)))
-    owners = np.array(study.owners)
-    by_slope = np.stack([np.sum(parts[:, owners == number], axis=1) for number in range(len(study.scatters))])
+    by_slope = np.stack([np.bincount(study.owners, each) for each in parts], axis=-1)
     alone = np.where(constant, 0.0, squares_alone(study, results, centre=None))
     percentiles = np.percentile(values, PERCENTILES, axis=0) if len(values) else np.full((len(PERCENTILES), len(linear)), np.nan)
     return Spread(

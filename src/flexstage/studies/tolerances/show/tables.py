@@ -20,7 +20,7 @@ _FAR = 10.0
 _FINE = 1e3
 _COLUMNS = (
     "alone: only this entry deviates. equal shares: all entries deviate, and each uses the same fraction of the margin. common factor: the "
-    "deviations of all entries have the same factor."
+    "deviations of all entries have the same factor. alone and equal shares are unknown (-) if the interval of an entry is asymmetric."
 )
 _NO_YIELD = "No yield, because neither [requirements] of the design nor [limits] of the study define a specification."
 
@@ -149,14 +149,17 @@ def allowance_table(found: Toleranced) -> Table:
 def _scaled_size(scatter: Scatter, factor: float) -> Cell:
     if factor > _FAR:
         return Cell(f"> {_size(scatter, _FAR * scatter.distribution.size)}", Mark.FAINT)
-    mark = Mark.PLAIN if factor >= 1.0 else Mark.FAIL
+    mark = Mark.FAIL if factor < 1.0 else Mark.PLAIN
     return Cell("none" if factor == 0.0 else _size(scatter, factor * scatter.distribution.size), mark)
 
 
 def _allowed_notes(allowed: Allowance) -> list[str]:
     notes = [f"For a yield of {100.0 * allowed.wanted:g} % of each requirement, to first order. {_COLUMNS}"]
     if allowed.together == 0.0:
-        return [*notes, f"The nominal design violates {allowed.binding}, whatever the tolerances are."]
+        return [
+            *notes,
+            f"{allowed.binding} leaves no tolerance: the nominal design has no margin to it, or too many samples have no value.",
+        ]
     if allowed.then is not None and allowed.together <= _FAR:
         then = f"With all changes multiplied by this factor, the yield of the sample is {_percent(allowed.then.share)} %"
         notes.append(f"Common factor: {number(allowed.together, 3)}, limited by {allowed.binding}. {then}.")
@@ -185,7 +188,7 @@ def _reference(found: Toleranced) -> Array:
 
 def _entry(value: float) -> Cell:
     scaled = _FINE * float(value)
-    return Cell(number(scaled, 3) if scaled > 1e-3 else "0", Mark.PLAIN if scaled > 1e-3 else Mark.FAINT)
+    return Cell("0", Mark.FAINT) if scaled <= 1e-3 else Cell(number(scaled, 3))
 
 
 def _worst(crosstalk: Crosstalk) -> str:
