@@ -23,7 +23,7 @@ from flexstage.studies.optimisation.search.problem import Problem, Side
 from flexstage.studies.optimisation.search.quadratic import quadratic
 from flexstage.studies.optimisation.search.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import setting
-from flexstage.studies.optimisation.show.tables import _notes
+from flexstage.studies.optimisation.show.tables import _notes, optimise_tables
 from flexstage.studies.optimisation.values import Point, Scalars, Values
 from tests.conftest import FULL
 from tests.laws.optima import BLADES, POST, TRIPOD, case_of, post_variables, study_of
@@ -310,6 +310,14 @@ def test_one_per_cent_of_a_limit_of_zero_brings_no_gain():
     """A range that begins at 0 mm: 1 % of its end is nothing, not 10 mm."""
     assert Binding("at", 0.0, "m", 100.0, of_range=True, objective_unit="Hz").gain == 0.0
     assert Binding("at", -0.02, "m", 100.0, of_range=True, objective_unit="Hz").gain == pytest.approx(0.02)
+
+
+def test_the_margin_to_a_limit_of_zero_is_a_length(tmp_path):
+    """30 mm above at least 0 mm are 30 mm, not 3 %."""
+    text = post_variables() + '[limits]\n"envelope.x" = "at least 0 mm"\n[optimise]\nmaximise = "f1"\nstarts = 1'
+    found = optimise(*study_of(tmp_path, POST, text))
+    (row,) = optimise_tables(found)[2].texts()[1:]
+    assert row[4] == "50 mm"
 
 
 def test_variables_without_effect_at_the_nominal_design_may_have_one_elsewhere(tmp_path):

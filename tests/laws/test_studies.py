@@ -172,6 +172,15 @@ def test_designs_that_fail_keep_their_place_and_reason():
     assert np.all(np.isfinite(np.delete(found.responses, negative, axis=0)))
 
 
+def test_a_design_without_one_of_its_values_has_no_value(monkeypatch):
+    """A failed design violates every limit, also those on measures that are finite."""
+    study = loads_study(STUDY.replace("frequency.1", "mass"))
+    monkeypatch.setattr(Study, "evaluate", lambda *_: (np.array([1.0, 2.0]), np.array([np.inf, 3.0])))
+    found = piece(study, 0, 2)
+    assert found.failures == {0: "stiffness.x: no finite value"}
+    np.testing.assert_array_equal(found.responses, [[np.nan, np.nan], [2.0, 3.0]])
+
+
 @pytest.mark.parametrize(
     "key",
     [

@@ -8,6 +8,7 @@ from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.base.number import Array
 from flexstage.show.display import format_value
 from flexstage.show.table import Cell, Column, Mark, Table, make_table, result_table
+from flexstage.show.tables.requirements import answer_text, is_met, margin_text
 from flexstage.studies.optimisation.result import Contradiction, Front, Optimum, Start
 from flexstage.studies.optimisation.values import Point, values_of
 from flexstage.studies.sweeps.definition import Study
@@ -87,10 +88,10 @@ def _limits(found: Optimum) -> Table:
     rows = []
     for index, each in enumerate(found.limits):
         verdict = Verdict(each, np.asarray(point.values[first + index]))
-        kept = bool(verdict.passed)
+        kept = is_met(verdict)
         values = [format_value(float(at.values[first + index]), each.quantity.si, 5) for at in (found.before, point)]
-        mark = Cell("met" if kept else "not met", Mark.PASS if kept else Mark.FAIL)
-        rows.append((Cell(each.key, Mark.STRONG), each.text, *values, f"{100.0 * float(verdict.margin):+.3g} %", mark))
+        mark = Cell(answer_text(verdict), Mark.PASS if kept else Mark.FAIL)
+        rows.append((Cell(each.key, Mark.STRONG), each.text, *values, margin_text(verdict), mark))
     heads = ["limit", "required", Column("nominal"), Column("final"), Column("margin"), "verdict"]
     return make_table("Limits", heads, rows)
 

@@ -85,9 +85,10 @@ def _compute(study: Study, values: Array, engine: Engine) -> tuple[Array, Reason
         result[sound[place]], reason = _bisect(values[sound[[place]]], len(columns), lambda part: _batch(study, part, columns))
         reasons |= {int(place): text for text in reason.values()}
     failures |= {int(sound[place]): reason for place, reason in reasons.items()}
-    result[list(failures)] = np.nan
     lost = np.flatnonzero(~np.all(np.isfinite(result), axis=-1))
-    return result, {int(row): failures.get(int(row)) or _missing_values(study, result[row]) for row in lost}
+    reasons = {int(row): failures.get(int(row)) or _missing_values(study, result[row]) for row in lost}
+    result[lost] = np.nan
+    return result, reasons
 
 
 def _sound_rows(values: Array, failures: Reasons) -> Array:
