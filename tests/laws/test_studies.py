@@ -133,6 +133,15 @@ def test_designs_that_fall_under_their_weight_have_no_values(tmp_path: Path, res
     assert "0.707 (mass 14 kg)" in loaded_findings(study)[0].what
 
 
+def test_designs_fall_also_if_only_the_study_has_gravity(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 2.5 kg without gravity in the design file, 50 m/s^2 and 100 m/s^2 are 1.29 and 2.58 times what the leaves bear."""
+    monkeypatch.setattr("tests.laws.test_studies.MASS", 'gravity = ["0 m/s^2", "0 m/s^2", "0 m/s^2"]\n' + MASS.lstrip())
+    varied = 'variables.gravity = { address = "gravity.z", from = "-100 m/s^2", to = "0 m/s^2", levels = 3 }'
+    study = upright(tmp_path, 'responses.f = "frequency.platform.1"', varied)
+    assert np.isfinite(piece(study, 0, 3).responses[:, 0]).tolist() == [False, False, True]
+    assert "smallest load factor 0.388 (gravity -100 m/s^2)" in loaded_findings(study)[0].what
+
+
 @pytest.mark.parametrize(("most", "words"), [(0.05, ""), (0.3, "measures over a path"), (1.0, "Add to [limits]")])
 def test_a_study_warns_from_one_per_cent_of_stiffness(tmp_path: Path, most: float, words: str):
     """The load factor is about 9.9 kg over the mass."""

@@ -8,10 +8,9 @@ from flexstage.analysis.loaded.load_effect import SIGNIFICANT
 from flexstage.analysis.loaded.stability import DOUBTFUL, stability
 from flexstage.analysis.loaded.standing import load_factors
 from flexstage.base.finding import DesignError, Finding, require
-from flexstage.base.number import Array, stack
+from flexstage.base.number import Array
 from flexstage.base.session import SESSION
 from flexstage.mechanism.checks import require_valid
-from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.studies.sweeps.definition import Study
 
@@ -88,8 +87,6 @@ def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
 @SESSION.keep(2)
 def _least(study: Study) -> tuple[float, Array]:
     """The smallest load factor among the ends of every range, others nominal, and the corner of the worse ends; and the values there."""
-    if not _has_load(study.design):
-        return np.inf, np.zeros(len(study.variables))
     probes = _probes(study)
     factors = _factors(study, probes)
     if len(study.variables) <= _ENDS:
@@ -109,11 +106,6 @@ def _probes(study: Study) -> Array:
     for place, each in enumerate(study.variables):
         found[1 + 2 * place, place], found[2 + 2 * place, place] = each.low, each.high
     return found
-
-
-def _has_load(design: Mechanism) -> bool:
-    """Whether there is any permanent load, possibly varied by the study."""
-    return bool(np.any(np.real(stack(design.gravity)) != 0.0)) or bool(design.forces)
 
 
 def _factors(study: Study, values: Array) -> Array:
