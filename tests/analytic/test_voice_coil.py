@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.assessment.judge import bench_of, judge
 from flexstage.analysis.complete import analyse
 from flexstage.analysis.dynamics.response import response
 from flexstage.analysis.workspace.force_workspace import force_workspace, input_limits
@@ -245,6 +245,14 @@ def test_a_permanent_load_near_yield_leaves_little_reach(share: float, left: flo
     pushed = replace(free, forces={"load": Force(PLATFORM, at, (push, 0.0, 0.0))})
     found = force_workspace(pushed, ideal(pushed), lumped(pushed))
     assert found.held.item() == pytest.approx(left * reach, rel=1e-9, abs=1e-15)
+
+
+def test_stress_without_required_strokes_is_not_said_to_be_at_peak_current():
+    """The amplifier's 12 V over 6 ohm allow 2 A, half the peak current of the coil."""
+    whole = stage(LIMITED)
+    bench = bench_of(replace(whole, parts={**whole.parts, "leaf": whole.parts["leaf"].part}))
+    assert np.max(np.abs(bench.stress.worst_strokes.values)) == pytest.approx(2.0)
+    assert bench.stress.condition == "of all strokes and forces (coils at their limits in short use)"
 
 
 def test_requirements_of_what_holding_takes():

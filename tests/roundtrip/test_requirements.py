@@ -24,7 +24,7 @@ from flexstage.base.units.unit import quantity_of_unit
 from flexstage.cases.registry import CASES, case
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
-from flexstage.show.tables.requirements import verdict_text
+from flexstage.show.tables.requirements import rank, verdict_text
 from tests.show.stages import seldom
 
 
@@ -180,6 +180,7 @@ def test_a_margin_to_a_limit_of_zero_is_no_percentage(stage):
     told = [verdict_text(judge(replace(stage, requirements=each))) for each in (lines, {"clearance": "at least 0 mm"})]
     assert told[0].endswith("%, for frequency.platform.1.")
     assert told[1].endswith(" mm, for clearance.")
+    assert min(judge(replace(stage, requirements=lines)), key=rank).requirement.key == "frequency.platform.1"
 
 
 def test_margins_and_edges(stage):

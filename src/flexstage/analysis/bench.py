@@ -201,7 +201,7 @@ class StageResults:
     @cached_property
     def stress(self) -> HingeStress:
         """Largest hinge stresses over all strokes and forces; hinges are stress-free at zero voltage."""
-        condition = "of all strokes and forces (coils at peak current)" if self.assembly.thrusts else FROM_ZERO
+        condition = "of all strokes and forces (coils at their limits in short use)" if self.assembly.thrusts else FROM_ZERO
         return hinge_stress(self.mechanism, self.model, self._loaded, condition=condition)
 
     @cached_property

@@ -71,7 +71,7 @@ class Analysis(InNotebook):
     paths). The error budget is for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
 
     `freedoms` contains the stiffness along ideal motions and constraints (None for six ideal motions). `mass` is the platform's effective
-    mass. `stress` is computed at the required strokes; for force-driven stages without required strokes, at peak current.
+    mass. `stress` is computed at the required strokes; for force-driven stages without required strokes, at the limits of short use.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("an analysis", "fs.analyse(stage)")

@@ -189,7 +189,7 @@ def _nth(frequencies: Array, asked: Measure) -> Array:
 
 @partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
 def safety(bench: StageResults, _: Measure) -> Array:
-    """Stress limit over peak stress in the worst hinge, at the worst corner of the stroke range from zero voltage, or at peak current."""
+    """Stress limit over peak stress in the worst hinge, at the worst corner of the stroke range from zero voltage, or at force limits."""
     return _known_safety(bench.stress)
 
 

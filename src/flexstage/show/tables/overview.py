@@ -22,7 +22,7 @@ from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
 from flexstage.show.tables.lost_motion import loss_table
-from flexstage.show.tables.requirements import first_margin, is_met, margin_text, value_text, verdict_table, verdict_text
+from flexstage.show.tables.requirements import margin_text, rank, value_text, verdict_table, verdict_text
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 
 _DIGITS = 4
@@ -272,17 +272,11 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
     )
     if not analysis.verdicts:
         return f"Verdict: {_NO_REQUIREMENTS}{more}"
-    worst = min(analysis.verdicts, key=_rank)
+    worst = min(analysis.verdicts, key=rank)
     asked = worst.requirement
     why = worst.reason.rstrip(".") or _cause(analysis, worst)
     look = f"Look at {asked.key}, {value_text(worst)} ({asked.text}, {margin_text(worst)}){f': {why}' if why else ''}."
     return f"Verdict: {verdict_text(analysis.verdicts)}\n  {look}{more}"
-
-
-def _rank(verdict: Verdict) -> tuple[bool, float]:
-    """Failed before met, smallest margin first, unknown before all."""
-    margin = first_margin(verdict)
-    return is_met(verdict), -np.inf if np.isnan(margin) else margin
 
 
 def _cause(analysis: Analysis, verdict: Verdict) -> str:
@@ -319,7 +313,7 @@ def _loss_cause(analysis: Analysis, name: str) -> str:
 def _safety_cause(analysis: Analysis, _: str) -> str:
     stress = None if analysis.workspace is None else analysis.workspace.stress
     if stress is None and analysis.kinematics.thrusts:
-        return "with all coils at peak current; safety.at_strokes is for the required strokes"
+        return "with all coils at their limits in short use; safety.at_strokes is for the required strokes"
     return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
 
 

@@ -70,9 +70,21 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
     if failed:
         names = ", ".join(f"{each.requirement.key} ({'unknown' if each.value is None else margin_text(each)})" for each in failed)
         return f"{len(verdicts) - len(failed)} of {len(verdicts)} requirements are met. Not met: {names}."
-    least = min(verdicts, key=lambda each: (each.requirement.limit == 0.0, first_margin(each)))
+    least = min(verdicts, key=rank)
     which = f"All {len(verdicts)} requirements are met" if len(verdicts) > 1 else "The requirement is met"
     return f"{which}; the smallest margin is {margin_text(least).removeprefix('+')}, for {least.requirement.key}."
+
+
+def rank(verdict: Verdict) -> tuple[bool, bool, float]:
+    """Return a sort key: unknown, failed, met; the smallest margin first, margins to limits of zero last, because they are not relative.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.assessment.judge import judge
+    >>> rank(judge(double_triangle())[6])[:2]
+    (True, False)
+    """
+    known = verdict.value is not None
+    return is_met(verdict), known and verdict.requirement.limit == 0.0, first_margin(verdict) if known else -np.inf
 
 
 def first_margin(verdict: Verdict) -> float:
