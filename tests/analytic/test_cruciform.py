@@ -16,6 +16,7 @@ from flexstage.beams.compliance import beam_of, compliance
 from flexstage.beams.stress import stress
 from flexstage.parts.cruciform import Cruciform, cross
 from flexstage.parts.section import Rectangle
+from flexstage.show.table import result_table
 from flexstage.solid.fea.geometry.draw import draw_form
 from flexstage.solid.fea.hinges.hinge import hinge_compliance
 from flexstage.solid.fea.meshing.estimate import Accuracy
@@ -152,6 +153,7 @@ def test_a_column_of_thin_leaves_twists_long_before_it_bends() -> None:
     found = analyse(stage).buckling
     assert found is not None
     assert found.critical[..., 0] == pytest.approx(twisting, rel=1e-12)
+    assert "torsional buckling load" in result_table(found).notes[0]
 
 
 def test_solid_has_the_area_of_its_section() -> None:

@@ -48,7 +48,7 @@ class Buckling(Result):
         "Buckling of single parts",
         "table ends",
         head="part",
-        notes=("Euler load of each part with the listed end conditions.",),
+        notes=("Euler load of each part with the listed end conditions, or its torsional buckling load if lower.",),
     )
 
     links: tuple[str, ...]
