@@ -20,6 +20,8 @@ from flexstage.analysis.linear_statics.units import units
 from flexstage.analysis.loaded.misalign import Misalignments
 from flexstage.analysis.loaded.stability import Stability
 from flexstage.analysis.workspace.buckling import Buckling, Ends
+from flexstage.analysis.workspace.stops import single_strokes
+from flexstage.analysis.workspace.stroke import stroke_limits, utilisation
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.labelled import Matrix
 from flexstage.base.record import INNER, Along, Graded, Heading, Layout, UnitIn, walk
@@ -41,6 +43,7 @@ from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.overview import axis_table, summary_tables
 from flexstage.show.tables.response import response_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
+from flexstage.show.tables.workspace import corner_table
 from flexstage.show.viewer.data import still_data
 from flexstage.spatial.frame import COMPONENTS
 from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported, seldom
@@ -406,3 +409,14 @@ def test_the_used_share_of_compression_is_said_to_include_the_preload():
     stack = case("parallelogram").parts["stack"]
     assert bearing.usage == pytest.approx((bearing.max_force + stack.preload) / stack.maximum_load)
     assert "The used share in compression includes the preload." in " ".join(result_table(bearing).notes)
+
+
+def test_a_single_axis_stroke_is_within_reach():
+    """The ratio of required to available stroke is 1, but for rounding."""
+    stage = case("stewart")
+    kinematics = ideal(stage)
+    strokes = single_strokes(stage, kinematics)
+    for name, value in zip(strokes.coordinates, strokes.symmetric.tolist(), strict=True):
+        used = utilisation(kinematics.mapping, stroke_limits(stage), {name: value})
+        assert used.reachable
+        assert "within reach; all ranges can be scaled by 1." in corner_table(used).notes[0]

@@ -115,8 +115,8 @@ class Utilisation(Result):
 
     @property
     def reachable(self) -> Annotated[Array, VIEW]:
-        """Whether every corner of the box can be reached (...)."""
-        return np.max(self.ratio, axis=-1) <= 1.0
+        """Whether every corner of the box can be reached (...), within a relative rounding error of 1e-9."""
+        return np.max(self.ratio, axis=-1) <= 1.0 + 1e-9
 
     @property
     def scale(self) -> Annotated[Array, RATIO]:

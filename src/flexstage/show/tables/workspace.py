@@ -42,7 +42,7 @@ def corner_table(corner: Utilisation) -> Table | None:
     ['B1', '50', '75', '66.67 %']
     """
     scale = single(corner.scale)
-    verdict = "within reach" if scale >= 1.0 else "out of reach"
+    verdict = "within reach" if scale >= 1.0 - 1e-9 else "out of reach"
     return result_table(
         corner,
         notes=[f"All combinations of {command_text(corner.command)}: {verdict}; all ranges can be scaled by {number(scale, 4)}."],
