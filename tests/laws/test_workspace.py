@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import flexstage as fs
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.gauging import gauge_inverse, gauge_range, pose_resolution
 from flexstage.analysis.workspace.load import load_share
@@ -16,6 +17,7 @@ from flexstage.analysis.workspace.map_error import linear_map_error, map_error_a
 from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
+from flexstage.analysis.workspace.wrench import dead_wrenches
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.beams.stress import stress
@@ -249,3 +251,17 @@ def test_weight_is_carried(mechanism):
     found = load_share(mechanism, model).compression
     upside = load_share(replace(mechanism, gravity=tuple(-2.0 * part for part in mechanism.gravity)), model).compression
     np.testing.assert_allclose(upside, -2.0 * found, rtol=1e-9, atol=1e-9 * np.max(np.abs(found)))
+
+
+@pytest.mark.parametrize("gravity", [10.0, -10.0])
+def test_wrenches_of_links_are_positive_in_tension(gravity: float) -> None:
+    """1 kg above a rod on the ground, pulled up or pressed down by its weight."""
+    stage = fs.Mechanism(
+        "column",
+        materials={"steel": fs.Material(young=200e9, poisson=0.3, density=0.0)},
+        parts={"rod": fs.Rod("steel", 0.05, 2e-3)},
+        bodies={"platform": fs.Body(mass=1.0, centre=(0.0, 0.0, 0.05), inertia=fs.Inertia(1e-3, 1e-3, 1e-3), reference=(0.0, 0.0, 0.05))},
+        links={"rod": fs.Link(("ground", "platform"), "rod", (0.0, 0.0, 0.025), fs.Z, bends=fs.X)},
+        gravity=(0.0, 0.0, gravity),
+    )
+    assert dead_wrenches(stage, fs.lumped(stage), ("rod.fx",)) == pytest.approx(gravity)

@@ -94,8 +94,8 @@ class SmallMotion:
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
         """Return half the square of the largest rotation or bend in a box of displacements (half widths).
 
-        The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. The end deflection relative to the middle is u,
-        and the rotation between the ends is theta.
+        The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. The deflection between the ends, both extended
+        rigidly to the middle, is u, and the rotation between the ends is theta.
         """
         turned, bent = self._moved(command)
         worst = int(np.argmax(np.round(np.maximum(turned, bent), 12)))
