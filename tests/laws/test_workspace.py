@@ -55,7 +55,7 @@ def test_single_strokes_end_at_an_actuators_end(drawn):
             strokes = mapping.values[:, index] * end
             used = np.maximum(strokes / limits.high, strokes / limits.low)
             np.testing.assert_allclose(np.max(used), 1.0, rtol=1e-12)
-        strokes = mapping.values[:, index] * found.high[index]
+        strokes = mapping.values[:, index] * min(found.low[index], found.high[index], key=abs)  # the symmetric stroke
         row = mapping.rows.index(found.limiting[index])
         edge = limits.high[row] if strokes[row] > 0.0 else limits.low[row]
         np.testing.assert_allclose(strokes[row], edge, rtol=1e-9), name
