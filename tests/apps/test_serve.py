@@ -18,6 +18,7 @@ import pytest
 
 import flexstage
 from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.serve.controller import StageController
 from flexstage.control.serve.errors import Code, CommandError
@@ -27,7 +28,7 @@ from flexstage.control.serve.waves import segment
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.run import simulate
 from flexstage.control.simulation.running import RunningLoop
-from flexstage.control.study.choices import ControllerKind
+from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from flexstage.experiment.formats.gcs import read_gcs
@@ -112,6 +113,17 @@ def client(port) -> Iterator[Client]:
 
 
 # --- the loop itself ---
+
+
+def test_load_strokes_are_part_of_the_voltages():
+    """The platform's weight takes 5 um of the three vertical stacks of 0.2 um/V, from 500 V on, and as much of their range."""
+    plain, carrying = (
+        StageController(double_triangle(), LoopSetup(controller=ControllerSetup(integral=5.0), compensate=each))
+        for each in ((), (Compensation.LOAD,))
+    )
+    assert (carrying.volts - plain.volts)[3:] == pytest.approx(5.37045e-6 / 0.2e-6, rel=1e-4)
+    ranges = [each.running.machine.amplifiers.high[3:] for each in (plain, carrying)]
+    assert ranges[0] - ranges[1] == pytest.approx(5.37045e-6, rel=1e-4)
 
 
 def test_a_loop_that_goes_on_is_the_simulation():

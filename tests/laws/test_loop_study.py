@@ -30,7 +30,7 @@ from flexstage.control.study.choices import Axis, Compensation, ControllerKind, 
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.course import courses, sampled_course
 from flexstage.control.study.resolve import default_rate, resolve
-from flexstage.control.study.runs import StepAnswer, command_ends, rest_rms, runs
+from flexstage.control.study.runs import StepAnswer, driven_machine, rest_rms, runs
 from flexstage.control.study.setup import (
     AmplifierSetup,
     AxisAmplitudes,
@@ -251,14 +251,16 @@ def test_loads_that_are_carried_take_of_the_strokes() -> None:
 
 
 def test_strokes_that_carry_loads_take_of_the_simulated_range() -> None:
-    """Voltages are counted from those of the load strokes, and a step ends where the stack ends."""
+    """Voltages are counted from those of the load strokes, also in exported controllers, and a step ends where the stack ends."""
     asked = LoopSetup(controller=CALM, trajectory=StepMotion(amplitude=AxisAmplitudes(x=1e-6)), seconds=0.05)
     given = resolve(parallelogram(), asked)
-    control = make_controller(given, given.plant.coordinates.strokes)
-    high, gain = command_ends(given).high[0], drive(parallelogram()).gain[0]
-    (run,) = runs(given, control, loop(given.plant, control.system), None, np.array([high - 1.0001e-6]))
+    control, electric = make_controller(given, given.plant.coordinates.strokes), drive(parallelogram())
+    carried = electric.gain * (electric.high - electric.bias) - 1.0001e-6
+    given = replace(given, carried=carried)
+    assert driven_machine(given, control).amplifiers.bias == pytest.approx(electric.high - 1.0001e-6 / electric.gain)
+    (run,) = runs(given, control, loop(given.plant, control.system))
     seen = run.simulated
-    assert seen.volts[0, 0] == pytest.approx(drive(parallelogram()).bias[0] + (high - 1.0001e-6 + seen.given[0, 0]) / gain)
+    assert seen.volts == pytest.approx(electric.bias + (carried + seen.given) / electric.gain)
     assert np.max(seen.given) == pytest.approx(1.0001e-6, rel=1e-9)  # the integrator goes to the end
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,10 +14,12 @@ from flexstage.control.serve.errors import Code, CommandError
 from flexstage.control.serve.recorder import POSITION, TABLES, VOLTAGE, Recorder
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.running import RunningLoop
+from flexstage.control.study.choices import Compensation
 from flexstage.control.study.disturbed import rest_time
 from flexstage.control.study.resolve import resolve
+from flexstage.control.study.rest import rest_errors
 from flexstage.control.study.retained import control_and_modes
-from flexstage.control.study.runs import command_ends, driven_machine
+from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import stacks_of
 from flexstage.control.study.study import pose_gains
@@ -55,7 +57,10 @@ class StageController:
 
     def __init__(self, mechanism: Mechanism, setup: LoopSetup | None = None) -> None:
         given = resolve(mechanism, setup or LoopSetup())
-        gains = pose_gains(given, None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model))
+        lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
+        gains = pose_gains(given, lost)
+        if lost is not None and Compensation.LOAD in given.setup.compensate:
+            given = replace(given, carried=rest_errors(given, lost).load_strokes)
         given, control, _ = control_and_modes(given, gains)
         closed = loop(given.plant, control.system)
         require_stable(closed, "simulation")
@@ -66,7 +71,7 @@ class StageController:
         self.axes = tuple(name.replace(".", "_")[:16] for name in machine.names)
         self.units = tuple("um" if each.unit == "m" else "urad" for each in machine.coordinates)
         self.step = machine.step
-        ends, reach = command_ends(given), np.where(machine.reach < _LARGEST, machine.reach, np.inf)
+        ends, reach = machine.amplifiers, np.where(machine.reach < _LARGEST, machine.reach, np.inf)
         self._gains = np.vstack([gains, np.linalg.pinv(machine.pose)])
         self._ends = np.concatenate([ends.low, -reach]), np.concatenate([ends.high, reach])
         self.low, self.high = _travel(self._gains, *self._ends)

@@ -55,6 +55,7 @@ class ResolvedSetup:
     on the nominal stage; if it is significant, the model is the loaded stage. With a measured plant, `predicted` is the model's plant.
     `damping` describes the force feedback, `charge` the charge amplifiers. `plant` and `whole` include both, if specified. In `model`,
     stacks have the stiffness at constant voltage, which is correct for statics. `solid` is the finite-element stage, if that is the model.
+    `carried` (n,) [m] are the strokes of load feedforward.
     """
 
     mechanism: Mechanism
@@ -72,6 +73,7 @@ class ResolvedSetup:
     charge: ChargedStacks | None = None
     solid: FeaModes | None = None
     stage: StagePlant | None = None
+    carried: Array | float = 0.0
 
     @property
     def model_name(self) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from flexstage.analysis.workspace.drive import Drive, drive
-from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
+from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.labelled import Matrix, ratio_units
@@ -195,15 +195,13 @@ class Run:
         return [channel.name for channel in self.simulated.coordinates].index(self.course.moved[0])
 
 
-def runs(
-    given: ResolvedSetup, control: Control, closed: Loop, stacks: Stacks | None = None, offset: Array | None = None
-) -> tuple[Run, ...]:
+def runs(given: ResolvedSetup, control: Control, closed: Loop, stacks: Stacks | None = None) -> tuple[Run, ...]:
     """Simulate all trajectories of a set-up.
 
     Steps are simulated without noise, other trajectories with noise. Gauge resolution and amplifier limits apply. The stacks have the
     hysteresis of `stacks`, compensated by the inverse model if specified. A loop is simulated until it has settled (see `rest_time`), or
-    for the set-up's duration. `offset` (n,) [m] are strokes that compensate for loads; they reduce the available range. Raises
-    `DesignError` for unknown coordinates, and for trajectories beyond the strokes.
+    for the set-up's duration. Strokes that compensate for loads reduce the available range. Raises `DesignError` for unknown coordinates,
+    and for trajectories beyond the strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.systems.closed import loop
@@ -222,10 +220,9 @@ def runs(
     sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _simulated_time(each, rest)) for each in asked]
     units = tuple(each.unit for each in loop.commands())
     gains = Matrix(control.gains, loop.actuators, loop.names, ratio_units(units, loop.units))
-    computed, taken = driven_machine(given, control, stacks), 0.0 if offset is None else offset
+    computed = driven_machine(given, control, stacks)
     powers = computed.amplifiers
-    powers = replace(powers, low=powers.low - taken, high=powers.high - taken, bias=powers.bias + taken / powers.gain)
-    computed, limits = replace(computed, amplifiers=powers), StrokeLimits(loop.actuators, powers.low, powers.high)
+    limits = StrokeLimits(loop.actuators, powers.low, powers.high)
     require(
         finding
         for course, (times, poses) in zip(asked, sampled, strict=True)
@@ -285,22 +282,20 @@ def _with_legs(run: Run, computed: Machine) -> Run:
     return replace(run, legs=Table(used), warnings=(*run.warnings, *warnings)) if used else run
 
 
-def command_ends(given: ResolvedSetup) -> StrokeLimits:
-    """Return the limits of the strokes, relative to the bias; for force actuators, the limits of their inputs."""
-    if not given.kinematics.thrusts:
-        return stroke_limits(given.mechanism)
-    powers = [given.plant.hardware.amplifiers[name] for name in given.plant.actuators]
-    low, high = np.array([each.low for each in powers]), np.array([each.high for each in powers])
-    return StrokeLimits(given.plant.actuators, low, high)
-
-
 def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None = None) -> Machine:
-    """Build the simulation model of a loop: hardware with limits and quantisation, and hysteretic `stacks`, with creep if specified."""
+    """Build the simulation model of a loop: hardware with limits and quantisation, and hysteretic `stacks`, with creep if specified.
+
+    Its bias includes the strokes of load feedforward; limits are relative to this bias.
+    """
     if stacks is None:
-        return machine(given.plant, control.system, _electric(given))
-    inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
-    plant = given.plant if stacks.creep is None else add_creep(given.plant, stacks.creep)
-    return machine(plant, control.system, stacks.electric, hysteresis=stacks.plant, compensation=inverted)
+        found = machine(given.plant, control.system, _electric(given))
+    else:
+        inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
+        plant = given.plant if stacks.creep is None else add_creep(given.plant, stacks.creep)
+        found = machine(plant, control.system, stacks.electric, hysteresis=stacks.plant, compensation=inverted)
+    powers, taken = found.amplifiers, given.carried
+    shifted = replace(powers, low=powers.low - taken, high=powers.high - taken, bias=powers.bias + taken / powers.gain)
+    return replace(found, amplifiers=shifted)
 
 
 def _electric(given: ResolvedSetup) -> Drive | None:

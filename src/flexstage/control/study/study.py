@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, ClassVar
 
@@ -201,11 +201,12 @@ def loop_study(
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
     rest = None if lost is None else rest_errors(given, lost)
-    carried = rest.load_strokes if rest is not None and Compensation.LOAD in given.setup.compensate else None
+    if rest is not None and Compensation.LOAD in given.setup.compensate:
+        given = replace(given, carried=rest.load_strokes)
     stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
     is_closed = setup is None or setup.controller.law is not ControllerKind.NONE
     said("simulating", 0.6)
-    tested = runs(given, control, closed, stacks, carried)
+    tested = runs(given, control, closed, stacks)
     measured = None if test is None or not is_closed else measured_margins(closed, test, given.predicted or given.plant)
     require(() if test is None or measured is None else coherence_findings(test, measured))
     said("noise", 0.8)
