@@ -8,6 +8,7 @@ import scipy
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
+from flexstage.control.example import integral_loop
 from flexstage.control.export.files import path_file
 from flexstage.control.learning.learn import LearningSettings, fade_ends, filter_path, learn, robust_band, wanted_readings
 from flexstage.control.learning.responses import Band, readings, through
@@ -85,6 +86,13 @@ def test_a_pass_contracts_wherever_the_modes_lie():
         moved = readings(closed.plant, control.system, lines, offset)
         worst = max(worst, float(np.max(np.abs(found.band.gains(lines) * (1.0 - gain * moved / model)[:, 0, 0]))))
     assert worst < found.contraction * 1.02
+
+
+def test_a_loop_too_slow_to_invert_is_told_as_such():
+    """The errors contract, but the inverse of a loop that reaches 1.6 mHz amplifies 100 times and more at 0.9 Hz."""
+    closed = integral_loop(gain=0.01)
+    with pytest.raises(DesignError, match=r"by 0\.4\d* \(expected 0\.8 or less\), and the inverse .* by \d{3,} \(expected 100 or less\)"):
+        robust_band(closed, closed.controller, 0.6, 0.02)
 
 
 def test_a_raster_is_learned_down_to_what_does_not_repeat():

@@ -106,7 +106,8 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
     beyond = np.flatnonzero((worst > _CONTRACTS) | (asked > _MOST_INVERTED))
     if len(beyond) and beyond[0] == 0:
         what = f"for mode shifts up to {100.0 * spread:g} %, one pass may multiply the error at {lines[0]:.3g} Hz by {worst[0]:.3g}"
-        raise refuse("follow", f"{what} (expected {_CONTRACTS:g} or less)", "Use a smaller gain or spread")
+        inverse = f"and the inverse of the loop amplifies by {asked[0]:.3g} (expected {_MOST_INVERTED:g} or less)"
+        raise refuse("follow", f"{what} (expected {_CONTRACTS:g} or less), {inverse}", "Use a smaller gain or spread, or a faster loop")
     end = float(lines[beyond[0] - 1]) if len(beyond) else 0.45 / step
     band = Band(end)
     return RobustBand(band, float(np.max(worst[lines <= end] * band.gains(lines[lines <= end]))))
