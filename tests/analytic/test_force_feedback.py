@@ -1,6 +1,7 @@
 """Force feedback in the legs: closed forms of Preumont, poles by an independent eigenvalue solve, and what stiffness it costs."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from flexstage.control.noise import disturbance_response, noise_budget
 from flexstage.control.plant_models.electronics import AmplifierSettings, sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
+from flexstage.control.show.tables import _damping_tables as loop_tables_of_damping
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
@@ -348,6 +350,15 @@ def test_lost_stiffness_is_told_relative_to_the_stiffness_without_feedback():
     (told,) = [each.what for each in study.warnings if "stiffness" in each.what]
     share = f"{100.0 * study.damping.softest[0]:.3g} %"
     assert told == f"force feedback reduces the platform's dynamic stiffness to {share} along x, at {study.damping.softest_at[0]:.3g} Hz"
+
+
+def test_modes_that_force_feedback_hardly_damps_are_said_to_be_omitted():
+    """The table has only the modes that the legs can damp by more than 1 %, and says so."""
+    found = resolve(case("parallelogram"), LoopSetup(controller=ControllerSetup(integral=300.0), damping=DampingSetup(ratio=0.3))).damping
+    still = replace(found, modes=(*found.modes, replace(found.modes[0], most=0.01)))
+    table = loop_tables_of_damping(SimpleNamespace(damping=still))[0]
+    assert len(table.rows) == len(found.modes)
+    assert "Modes with a maximum damping of 1 % or less are omitted." in table.notes
 
 
 def test_damping_that_is_not_reached_is_said():

@@ -130,7 +130,8 @@ def _damping_tables(found: LoopStudy) -> list[Table | None]:
         return []
     corner = f"{number(inner.corner, 4)} Hz" + ("" if inner.rate is None else f", sampled at {number(1e-3 * inner.rate, 4)} kHz")
     note = f"Gain {number(inner.gain, 4)} 1/s, high-pass filter of order {inner.order} at {corner}, in the legs {', '.join(inner.legs)}."
-    return [result_table([each for each in inner.modes if each.most > _LEAST_DAMPED], notes=[note]), result_table(inner)]
+    left_out = f"Modes with a maximum damping of {percent(_LEAST_DAMPED)} or less are omitted."
+    return [result_table([each for each in inner.modes if each.most > _LEAST_DAMPED], notes=[note, left_out]), result_table(inner)]
 
 
 def _charge_tables(found: LoopStudy) -> list[Table | None]:
