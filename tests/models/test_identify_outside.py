@@ -7,12 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.experiment.example import one_mode_record
 from flexstage.experiment.identification.confidence import NORMAL_95
-from flexstage.experiment.identification.diagnosis.peaks import PeakCause
+from flexstage.experiment.identification.diagnosis.peaks import PeakCause, ResidualResponses
+from flexstage.experiment.identification.diagnosis.peaks import peaks as find_peaks
+from flexstage.experiment.identification.evidence import evidence
+from flexstage.experiment.identification.group import RejectedResonance
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.outputs.tones import remove_tones
 from flexstage.experiment.records.record import InMemory, Record
+from flexstage.show.table import result_table
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
 
@@ -139,6 +144,17 @@ def test_intervals_hold_the_truth_where_a_drive_is_not_recorded() -> None:
         frequency = (found.frequencies - known.frequencies[mode]) / found.frequency_deviations
         scores.append(np.stack([frequency, (found.damping - known.damping[mode]) / found.damping_deviations]))
     assert np.mean(np.abs(np.concatenate(scores, axis=1)) < NORMAL_95) > 0.88
+
+
+def test_the_probability_of_a_resonance_that_is_not_driven_is_that_of_its_correlation_with_inputs() -> None:
+    """The resonance itself is certain; only that the inputs drive it is not, and the note says so."""
+    nothing = np.zeros(0)
+    silent = RejectedResonance(-0.1 + 20.0j, np.ones(1), 0.4)
+    (found,) = find_peaks(evidence(one_mode_record(), None), ResidualResponses(nothing, nothing, nothing), (silent,), ())
+    assert (found.doubt, found.chance) == (PeakCause.UNDRIVEN, 0.4)
+    table = result_table((found,))
+    assert table is not None
+    assert "if not driven, that inputs explain as much motion by chance" in table.notes[0]
 
 
 @pytest.mark.full

@@ -61,8 +61,8 @@ class Peak:
         "frequency outputs width resolution chance reason",
         notes=(
             (
-                "Probability: that of such a peak if there is no mode. A mode requires a probability of at most 1e-9 and, under floor "
-                "excitation, a width of at least the line spacing."
+                "Probability: that of such a peak if there is no mode; if not driven, that inputs explain as much motion by chance. A mode "
+                "requires a probability of at most 1e-9 and, under floor excitation, a width of at least the line spacing."
             ),
         ),
     )
