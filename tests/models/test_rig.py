@@ -23,6 +23,7 @@ from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise
 from flexstage.experiment.virtual_rig.chain import amplitude_shape, butterworth, chain
 from flexstage.experiment.virtual_rig.plan import plan_test
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
+from flexstage.experiment.virtual_rig.tables import rig_table
 from flexstage.mechanism.mechanism import Mechanism, ModalDamping, StructuralDamping
 from flexstage.models.linear.damping import modal_ratios
 from flexstage.models.linear.eigen import eigen
@@ -209,6 +210,14 @@ def test_drift_is_a_random_walk_across_blocks() -> None:
         assert np.std(steps) == pytest.approx(expected, rel=5.0 / np.sqrt(2.0 * steps.size) + 1e-3)
     neighbours = np.corrcoef(np.diff(walked[:, 0])[1:], np.diff(walked[:, 0])[:-1])[0, 1]
     assert abs(neighbours) < 5.0 / np.sqrt(len(walked))
+
+
+def test_expected_rms_is_stated_without_drift() -> None:
+    """A strong drift exceeds the motion in the record; the table says that its rms values leave it out."""
+    setup = RigSetup(seconds=8.0, rate=1024.0, drive=NoiseDrive(stroke=1e-8), sensing=Sensing(drift=5e-6, resolution=0.0))
+    test = simulate_test(*stage(), setup)
+    assert np.sqrt(np.mean(test.read(0, test.length)[:, -1] ** 2)) > 5.0 * 1e6 * test.chain.output_rms[-1]
+    assert "expected rms without drift" in rig_table(test).notes[0]
 
 
 def test_strokes_are_as_fast_as_their_band_makes_them() -> None:

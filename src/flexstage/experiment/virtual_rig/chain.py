@@ -57,7 +57,7 @@ class Chain:
 
     @property
     def output_rms(self) -> Array:
-        """Expected rms (p,) of the gauge readings [m, rad]: motion and noise."""
+        """Expected rms (p,) of the gauge readings [m, rad]: motion and noise, without drift and quantisation."""
         return np.sqrt(self._power(np.sum(np.abs(self.outputs) ** 2, axis=-1)) + self._power(np.abs(self.gauge) ** 2))
 
     @property

@@ -29,7 +29,7 @@ def rig_table(test: Simulated) -> Table:
         for name, read, rms, step in zip(plan.gauges, plan.units, test.chain.output_rms, plan.steps, strict=True)
     ]
     clock = f"{test.length} samples at {number(plan.rate, 6)} Hz"
-    noise = f"noise from {number(plan.band[0], 4)} to {number(plan.band[1], 4)} Hz"
+    noise = f"expected rms without drift; noise from {number(plan.band[0], 4)} to {number(plan.band[1], 4)} Hz"
     slowest = min(*plan.bandwidths, *plan.lags)
     lag = f"; lowest bandwidth of amplifiers and gauges {number(slowest, 4)} Hz" if slowest < float("inf") else ""
     note = f"{clock}; {noise}{lag}; highest platform mode {number(plan.highest, 4)} Hz. {test.chain.note[0].upper()}{test.chain.note[1:]}."
