@@ -341,6 +341,18 @@ def test_heat_limits_the_force_of_a_coil(tmp_path: Path) -> None:
     assert coil.force == pytest.approx(32.0 * (40.0 / 8.0 / 5.0) ** 0.5)
 
 
+def test_the_force_in_the_reason_of_a_bound_is_that_of_each_coil(tmp_path: Path) -> None:
+    """Of 32 N/A and 2.5 A each: the two coils of the travel stage have 160 N together."""
+    (tmp_path / "lab.toml").write_text(COIL)
+    text = (
+        SCANNER.replace('actuators.like = "PSt 1000/10/150 VS18"', 'catalogue = "lab.toml"').replace("50 um", "2 mm").replace("500", "5000")
+    )
+    spec = loads_specification(text, where=str(tmp_path / "spec.toml"))
+    pair = CandidatePair(architectures()["travel"], catalogue_actuators(spec)["voice_coil"][0])
+    reasons = {each.reason for each in shortfalls(spec, pair) if each.requirement == "frequency"}
+    assert reasons == {"2 coils have a continuous force of only 80 N each, even with the best lever"}
+
+
 def test_the_energy_of_an_amplified_actuator_is_that_of_its_blocked_deformation(tmp_path: Path) -> None:
     """It contracts and turns: (s/2)^2 u'ku, as for its whole free deformation held at the ends, half of the stroke either way."""
     (tmp_path / "lab.toml").write_text(SHELL + 'deformation = ["-300 um", 0, 0, 0, 0, "1 mrad"]\n')

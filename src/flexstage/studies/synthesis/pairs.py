@@ -117,7 +117,7 @@ def _force_shortfalls(spec: Specification, pair: CandidatePair, frequency: float
             continue  # the arm of the force is a matter of the box
         best = bounds.force_frequency_bound(source, value, spec.masses[axis])
         if best < frequency:
-            reason = f"{source.count} coils have a continuous force of only {source.force:.3g} N, even with the best lever"
+            reason = f"{source.count} coils have a continuous force of only {source.force:.3g} N each, even with the best lever"
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
 
 
