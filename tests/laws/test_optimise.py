@@ -16,6 +16,7 @@ from flexstage.base.storage.document import plain
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.addresses.address import addresses, get, set_values
 from flexstage.mechanism.checks import check
+from flexstage.show.display import format_value
 from flexstage.studies.optimisation.result import Binding
 from flexstage.studies.optimisation.search.front import pareto_front
 from flexstage.studies.optimisation.search.optimum import optimise
@@ -23,6 +24,7 @@ from flexstage.studies.optimisation.search.problem import Problem, Side
 from flexstage.studies.optimisation.search.quadratic import quadratic
 from flexstage.studies.optimisation.search.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import setting
+from flexstage.studies.optimisation.show.report import _headline
 from flexstage.studies.optimisation.show.tables import _notes, optimise_tables
 from flexstage.studies.optimisation.values import Point, Scalars, Values
 from tests.conftest import FULL
@@ -275,6 +277,7 @@ def test_rounded_designs_are_on_their_steps_and_the_best_around(tmp_path):
     np.testing.assert_allclose(counts, np.round(counts), atol=1e-9)
     assert found.rounded.loss == pytest.approx(found.value(found.point) - found.value(found.rounded.point))
     assert found.rounded.loss > 0.0
+    assert f"{format_value(found.value(found.rounded.point), 'Hz')} in the final design" in _headline(found).text
     values = setting(study, wanted)
     logs = [np.log(0.25e-3 * count / 1e-3) / np.log(8.0) for count in range(4, 33)]
     shares = np.array([((0.25 * count - 1.0) / 7.0, log) for count in range(4, 33) for log in logs])

@@ -50,13 +50,13 @@ def optimise_report(found: Optimum) -> str:
 
 
 def _stage(stages: Mapping[str, StageData]) -> Section | None:
-    """The optimum with the nominal design behind it, or, without a viewer, next to it."""
+    """The final design with the nominal design behind it, or, without a viewer, next to it."""
     if "before" not in stages:
         return stage_section(stages["stage"])
-    drawn = {"nominal": stages["before"], "optimum": stages["stage"]}
+    drawn = {"nominal": stages["before"], "final": stages["stage"]}
     pictures = [_still(each, f"stage{place}", f"The stage, {name}.") for place, (name, each) in enumerate(drawn.items())]
     viewer = Viewer("stage", (BlockRow(tuple(pictures)),), first_motion(stages["stage"]), "before")
-    caption = "The optimum. In the viewer, the outline shows the nominal design."
+    caption = "The final design. In the viewer, the outline shows the nominal design."
     return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(caption)])
 
 
@@ -86,4 +86,4 @@ def _headline(found: Optimum) -> Headline:
     limits = zip(found.limits, point.values[len(found.definition.objectives) :], strict=True)
     kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
     kept_text = f"; {sum(kept)} of {len(kept)} limits are met" if kept else ""
-    return Headline(f"{objective.name}: {before} in the nominal design, {after} at the optimum{kept_text}.", all(kept))
+    return Headline(f"{objective.name}: {before} in the nominal design, {after} in the final design{kept_text}.", all(kept))
