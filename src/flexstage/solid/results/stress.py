@@ -104,4 +104,4 @@ def _yield(read: SolidRead, assembly: Assembly, name: str) -> float:
     """The limit of a link, or the lowest one of a body's solids."""
     link, known = assembly.links.get(name), read.mechanism.materials
     materials = [known[each.solid.material] for each in assembly.bodies[name].solids.values()] if link is None else [link.material]
-    return float(np.min([np.nan if each is None or each.limit is None else np.real(each.limit) for each in materials]))
+    return float(np.min([np.nan if each is None or each.limit is None else float(np.real(each.limit)) for each in materials]))
