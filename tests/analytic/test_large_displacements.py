@@ -84,6 +84,16 @@ def test_the_strain_of_a_notch_is_that_of_its_throat():
     assert strains(equilibrium(model, {"platform.mz": moment})).largest == pytest.approx([1e-6], rel=0.005)
 
 
+def test_a_hanging_flexure_bears_its_own_weight():
+    """At its root (m + rho A L) g / A, with rho A L equal to the mass m of its body."""
+    leaf = replace(THIN, thickness=1e-3, width=0.2)
+    link = Link(("ground", "platform"), "leaf", at=(0.5, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    drawn = stage(leaf, {"platform": body(1.0, 0.0, 0.0)}, {"leaf": link}, replace(SOFT, density=1.0 / 2e-4))
+    found = strains(equilibrium(nonlinear(replace(drawn, gravity=(1e-9, 0.0, 0.0)))))
+    assert found.stress == pytest.approx([2e-9 / 2e-4], rel=1e-3)
+    assert found.largest == pytest.approx([2e-9 / 2e-4], rel=0.02)
+
+
 def test_a_notch_has_no_shapes_across_its_width():
     """A wide notch turned by 0.05 rad at its end: b^2 k / t is above 100, but its law has no plate bending that could be too coarse."""
     notch = Notch("soft", 0.0002, 0.02, Circular(0.003))

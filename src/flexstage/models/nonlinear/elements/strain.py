@@ -11,10 +11,10 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.models.nonlinear.elements.corotated import port_motion
-from flexstage.models.nonlinear.elements.element import Shape, shape
+from flexstage.models.nonlinear.elements.element import Shape
 from flexstage.models.nonlinear.elements.hinge import deform, imposed
 from flexstage.models.nonlinear.equilibrium import State
-from flexstage.models.nonlinear.graph import hinge_ends
+from flexstage.models.nonlinear.graph import flexure_state, hinge_ends
 from flexstage.models.nonlinear.stage import Flexures
 from flexstage.parts.material import Material
 
@@ -71,7 +71,7 @@ def strains(state: State) -> Strains:
     stressed: list[Array] = []
     for number, group in enumerate(state.model.flexures):
         law = group.law
-        lies = shape(law, state.pose.strain[number], state.pose.wrench[number][..., :3])
+        lies = flexure_state(group, state.pose, number, state.loads).lies
         bent = np.abs(_bent(lies) - law.natural[:, None, None, :1] * _ABOUT_Z) / law.length[:, None, None, None]
         half, wide = law.half[:, None, None, 0], law.half[:, None, None, 1]
         pulled = np.max(np.abs(lies.tension) * law.compliance[:, None, :, 0], axis=-1)
