@@ -27,7 +27,7 @@ _Bounds = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class Validity(InNotebook):
-    """Validity of beam theory for a part: its ranges, relative compliance `errors` by component (-0.1: 10 % too stiff), and warnings.
+    """Validity of beam theory for a part: its ranges, relative `errors` of the compliance by component (-0.1: 10 % too low), and warnings.
 
     A component without an error, or with NaN in a batch, was not compared with finite elements: its error is unknown.
     """
