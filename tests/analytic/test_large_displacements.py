@@ -39,6 +39,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
+from flexstage.parts.rod import Rod
 from flexstage.parts.section import Rectangle, cowper_rectangle
 from tests.analytic.shooting import cross_pivot
 from tests.analytic.strips import secant
@@ -82,6 +83,13 @@ def test_the_strain_of_a_notch_is_that_of_its_throat():
     model = nonlinear(stage(Notch("soft", 0.1, 1.0, Circular(0.5)), {"platform": body(1.0, 0.0, 0.0)}, {"leaf": link}))
     moment = 1e-6 * 0.1**2 / 6.0
     assert strains(equilibrium(model, {"platform.mz": moment})).largest == pytest.approx([1e-6], rel=0.005)
+
+
+def test_a_twisted_rod_has_the_stress_of_its_torque():
+    """16 T / (pi d^3) at its surface, times sqrt(3)."""
+    rod = Rod("soft", 1.0, 0.02)
+    found = strains(equilibrium(cantilever(rod), {"platform.mx": 1e-10}))
+    assert found.stress == pytest.approx([np.sqrt(3.0) * 16e-10 / (np.pi * 0.02**3)], rel=1e-6)
 
 
 def test_a_hanging_flexure_bears_its_own_weight():

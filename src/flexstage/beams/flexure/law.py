@@ -61,6 +61,7 @@ class FlexureLaw:
     - `length` L [m], and bending `rigidity` about z [N m^2]; they make the tables dimensionless.
     - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].
     - `half` (..., 2): half thickness and half width [m].
+    - `shearing` (...): largest shear stress over shear modulus, twist rate and half thickness: 2 in a strip, 1 in a round section.
     - `natural` (..., 2): natural curvatures about z and across the width, times the length.
     - `rest` (..., q): the negative first derivative of the energy with respect to the amplitudes, due to the natural curvatures.
     """
@@ -76,6 +77,7 @@ class FlexureLaw:
     stretch: Array
     inertia: Array
     half: Array
+    shearing: Array
     natural: Array
     rest: Array
 
@@ -132,6 +134,7 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
         stretch=12.0 * ratio * ratio * np.array([STRETCH_TWO, STRETCH_FOUR]),
         inertia=_spread(_inertia(section, float(material.density)), rule.size),
         half=0.5 * np.stack([thickness, width]),
+        shearing=np.asarray(2.0),
         natural=np.array([blank + heated, heated]),
         rest=thermal_gradient,
     )
@@ -191,6 +194,7 @@ def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = Fals
         stretch=np.array([wagner, 0.0]),
         inertia=(project(inertia[:, [0, 3, 4, 5]].T, places, weights, size) @ points).T,
         half=0.5 * np.array([thickness, width]),
+        shearing=np.asarray(2.0 - section.is_axisymmetric),
         natural=np.array([curvature * length, 0.0]),
         rest=curvature * length * np.eye(sum(counts))[sum(counts[:2])],
     )

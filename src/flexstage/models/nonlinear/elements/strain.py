@@ -142,11 +142,10 @@ def _stress(group: Flexures, materials: list[Material], lies: Shape) -> Array:
     law, flat = group.law, group.law.plate.shape[-1] > 0
     young, shear = _column([each.modulus for each in materials]), _column([each.shear for each in materials])
     poisson = _column([each.contraction if flat else 0.0 for each in materials])
-    length, half, wide = (each[:, None, None, None, None] for each in (law.length, law.half[:, 0], law.half[:, 1]))
+    length, half, wide, shearing = (each[:, None, None, None, None] for each in (law.length, law.half[:, 0], law.half[:, 1], law.shearing))
     bent = _bent(lies)[..., None, None, :] / length[..., None]
     natural, across_natural = (law.natural[:, None, None, None, None, place] / length for place in (0, 1))
-    ends = np.zeros((*lies.plate.shape[:-2], 2, 2))  # clamped: no section curvature of a leaf here
-    plate = np.concatenate([lies.plate, ends], axis=-2)[..., None, None, :] / length[..., None]
+    plate = np.pad(lies.plate, ((0, 0), (0, 0), (0, 2), (0, 0)))[..., None, None, :] / length[..., None]  # clamped ends: no curvature
     pulled = lies.tension * law.compliance[:, None, :, 0]
     pulled = np.concatenate([pulled, pulled @ lies.rule.ends.T], axis=-1)[..., None, None]
     twist, across, bend = (bent[..., axis] for axis in range(3))
@@ -159,5 +158,5 @@ def _stress(group: Flexures, materials: list[Material], lies: Shape) -> Array:
     bend, flexed = bend - natural, flexed - across_natural
     along = young * stretched - factor * face * (bend + poisson * flexed)
     over = -factor * face * (flexed + poisson * bend) if flat else 0.0 * along
-    torsion = 2.0 * shear * half * twist
+    torsion = shearing * shear * half * twist
     return np.sqrt(np.max(along * along + over * over - along * over + 3.0 * torsion * torsion, axis=(2, 3, 4)))
