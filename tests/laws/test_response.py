@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.linalg import solve_continuous_lyapunov
+from scipy.linalg import eigh, solve_continuous_lyapunov
 
 from flexstage.analysis.dynamics.random_response import Rate, Spectrum, random_response
 from flexstage.analysis.dynamics.response import default_frequencies, response, transmissibility
 from flexstage.base.finding import DesignError
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.frequency import direct
@@ -20,6 +21,7 @@ from flexstage.models.linear.model import Channel, Contribution, LinearModel
 from flexstage.models.linear.port import input_names, ports
 from flexstage.models.linear.state_space import state_space
 from flexstage.models.linear.static import part_deformation, static_gain
+from flexstage.models.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS
 from tests.laws.models import BODIES, FORCES, laws, linear_model, models, ratios, seeds
 
@@ -249,6 +251,16 @@ def test_the_default_grid_resolves_every_peak():
     assert np.all(np.diff(grid) > 0.0)
     peak = np.abs(response(model, ["platform.x"], ["u"], grid, damping=ModalDamping(1e-3)).values).max()
     assert peak == pytest.approx(500.0, rel=1e-3)
+
+
+def test_the_default_grid_ends_at_twice_the_twelfth_natural_frequency_or_the_last():
+    """Twice the twelfth of 18 natural frequencies, or twice the only one of a mass on a spring, ends it; 1/50 of the first begins it."""
+    stage = lumped(parallelogram())
+    many = np.sqrt(eigh(stage.stiffness_matrix, stage.inertia_matrix, eigvals_only=True)) / (2.0 * np.pi)
+    assert len(many) == 18
+    assert default_frequencies(stage)[[0, -1]] == pytest.approx([many[0] / 50.0, 2.0 * many[11]], rel=1e-6)
+    one = np.sqrt(800.0 / 2.0) / (2.0 * np.pi)
+    assert default_frequencies(oscillator(), damping=ModalDamping(0.01))[[0, -1]] == pytest.approx([one / 50.0, 2.0 * one], rel=1e-9)
 
 
 def test_refusals_name_the_object_and_the_remedy():
