@@ -28,6 +28,7 @@ from flexstage.models.lumped import lumped
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.freedom import ALL
+from flexstage.parts.leaf import Leaf
 from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.spatial.frame import spatial_rotation
 from tests.laws.strategies import mechanisms, moved, turns
@@ -154,3 +155,14 @@ def test_a_stage_inside_another_one_gives_what_it_gives_itself():
         static_gain(model, TWIST, model.actuators).values * METRE[:, None] * stroke for model, stroke in zip(models, strokes, strict=True)
     ]
     near(full[1], full[0], 1e-6)
+
+
+def test_a_stage_inside_another_one_weighs_what_its_bodies_links_and_stack_weigh():
+    """The part's mass is the sum of the bodies, of density times volume of every leaf, and of the stack."""
+    inner = case("bridge")
+    assembly = expand(inner)
+    leaves = [link for link in assembly.links.values() if isinstance(link.part, Leaf)]
+    blades = sum(link.material.density * link.part.length * link.part.thickness * link.part.width for link in leaves)
+    bodies = sum(float(body.mass.mass) for body in assembly.bodies.values())
+    assert len(leaves) == len(assembly.links) - 1
+    assert amplified(inner).mass == pytest.approx(bodies + blades + inner.parts["stack"].mass, rel=1e-12)
