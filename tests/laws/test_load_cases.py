@@ -116,6 +116,27 @@ def test_what_hangs_bears_any_weight() -> None:
     assert not buckling_factors(hangs, load_cases(hangs)[:1], most=100.0).warnings
 
 
+@pytest.mark.parametrize("gravity", ["on", "off"])
+def test_a_path_without_gravity_bears_its_load_without_the_weight(gravity: str) -> None:
+    """A clamped column with a heavy top bears load and weight up to P = pi^2 E I / 4 L^2; a path with gravity off has no weight."""
+    euler, weight = np.pi**2 * 200e9 * np.pi * 2e-3**4 / 64.0 / (4.0 * 0.2**2), 5.0
+    column = fs.Mechanism(
+        "column",
+        {"steel": fs.Material(young=200e9, poisson=0.3, density=0.0)},
+        parts={"rod": fs.Rod("steel", 0.2, 2e-3)},
+        bodies={
+            "platform": fs.Body(mass=weight / 9.80665, inertia=fs.Inertia(1e-4, 1e-4, 1e-4), centre=(0, 0, 0.2), reference=(0, 0, 0.2))
+        },
+        links={"rod": fs.Link(("ground", "platform"), "rod", (0.0, 0.0, 0.1), (0.0, 0.0, 1.0), bends=(1.0, 0.0, 0.0))},
+        gravity=(0.0, 0.0, -9.80665),
+        paths={"out": fs.StrokePath("platform.x", ("0 mm", "1 mm"), hold={"platform.z": "-1 N", "gravity": gravity})},
+    )
+    loaded = next(each for each in load_cases(column) if each.load == "platform.fz = -1 N")
+    (found,) = buckling_factors(column, [loaded]).cases
+    assert found.place == "platform.x = 0 mm"
+    assert found.factor == pytest.approx(euler - (weight if gravity == "on" else 0.0), rel=2e-3)
+
+
 def test_a_preload_is_a_load_that_grows() -> None:
     """A cantilever pressed by a spring whose force turns by half the tip's angle buckles at P = pi^2 E I / L^2, whatever its preload."""
     rod, soft = fs.Rod("steel", 0.2, 2e-3), fs.Spring(stiffness=1e-3, preload=0.5)
