@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +14,7 @@ from flexstage.analysis.loaded.operating_point import coordinate, operating_poin
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
+from flexstage.parts.freedom import Freedom
 from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation
 from flexstage.spatial.rotation import exponential
 from tests.laws.test_nonlinear import FINE, UNIT, guide
@@ -127,6 +129,25 @@ def test_a_warm_stage_sags_as_it_drifts():
 def test_what_cannot_be_is_refused_with_its_reason(asked: dict[str, Any], said: str):
     with pytest.raises(fs.DesignError, match=said):
         operating_point(guide(), **asked)
+
+
+def test_a_refused_moment_is_stated_with_the_last_sixteenth_that_a_pendulum_bears():
+    """A pendulum turns by asin(M / m g l) under a moment M; 1.5 m g l has no equilibrium, and 10/16 of it is the last below m g l."""
+    pendulum = fs.Mechanism(
+        "pendulum",
+        parts={"pivot": fs.Joint((Freedom.RX,))},
+        bodies={"platform": fs.Body(mass=2.0, inertia=fs.Inertia(1e-3, 1e-3, 1e-3), centre=(0.0, 0.0, -0.1), reference=(0.0, 0.0, 0.0))},
+        links={"pivot": fs.Link(("ground", "platform"), "pivot", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
+        gravity=(0.0, 0.0, -9.80665),
+    )
+    most = 2.0 * 9.80665 * 0.1
+    moved = operating_point(pendulum, {"platform.mx": 0.9 * most}).moved
+    assert moved is not None
+    assert moved.at("platform", "rx") == pytest.approx(np.arcsin(0.9), rel=1e-9)
+    with pytest.raises(fs.DesignError, match="no equilibrium found") as refused:
+        operating_point(pendulum, {"platform.mx": 1.5 * most})
+    (stated,) = re.findall(r"at 62% of the displacement \(platform\.mx = ([\d.]+)\)", str(refused.value))
+    assert float(stated) == pytest.approx(10.0 / 16.0 * 1.5 * most, rel=1e-3)
 
 
 def test_drives_that_do_nothing_are_told():
