@@ -23,6 +23,7 @@ from flexstage.base.labelled import Matrix
 from flexstage.beams.stress import stress
 from flexstage.cases.registry import case
 from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
 from flexstage.mechanism.mechanism import Force
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Payload
@@ -214,6 +215,23 @@ def test_gauge_swing_is_the_worst_corner_and_the_radius_its_limit(mechanism, see
             assert swing <= limit * (1.0 + 1e-9)
     worst, here = (np.nan_to_num(radii, nan=-1.0) for radii in (found.largest_anywhere, found.largest_here))
     assert np.all(worst - here <= 1e-9 * np.abs(here))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_a_gauge_above_the_reference_at_its_largest_radius_reads_half_its_range(turn):
+    """Tilts move a gauge 75 mm above the reference also by this height; a ring of gauges at the least radius reads no more at any angle."""
+    stage = case("double-triangle")
+    command = {"x": 2e-5, "y": 3e-5, "z": 5e-5, "rx": 4e-4, "ry": 7e-4, "rz": 6e-4}
+
+    def ranged(radius, first, names):
+        ring = replace(stage.gauges["S1-S3"], pattern=Polar(radius, first, InstanceOrientation.TANGENT, height=0.18, turn=turn))
+        placed = replace(stage, gauges={names: ring}, requirements={})
+        return gauge_range(placed, ideal(placed), command)
+
+    for first in (0.3, 2.0):
+        found = ranged(0.1, first, "S1-S1")
+        assert ranged(found.largest_here[0], first, "S1-S1").swing == pytest.approx(found.limit, rel=1e-9)
+    assert np.max(ranged(found.largest_anywhere[0], 0.0, "S1-S72").swing) == pytest.approx(found.limit[0], rel=1e-3)
 
 
 @given(actuated_platforms(), turns())
