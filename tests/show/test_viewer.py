@@ -213,6 +213,26 @@ def test_strokes_and_axes_are_those_of_the_models() -> None:
         assert own == pytest.approx(1e-6 * float(gain.actuators[name].gain), rel=1e-6)
 
 
+def test_a_stroke_strains_a_stack_and_its_spring_by_the_same_force() -> None:
+    """A stack k that pushes against a spring c strains both by one force F: the energies F^2 / 2k and F^2 / 2c, not its free expansion."""
+    stack, spring = 2e7, 5e6
+    pushed = fs.Mechanism(
+        "stack and spring",
+        parts={
+            "stack": fs.Piezo(stroke=2e-5, stiffness=stack, length=0.02, diameter=0.005),
+            "spring": fs.Spring(diagonal=(spring, 1e6, 1e6, 1e2, 1e2, 1e2)),
+        },
+        bodies={"platform": fs.Body(mass=0.1, inertia=fs.Inertia(1e-4, 1e-4, 1e-4))},
+        links={
+            "drive": fs.Link(("ground", "platform"), "stack", (-0.01, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0)),
+            "back": fs.Link(("platform", "ground"), "spring", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0)),
+        },
+        gravity=(0.0, 0.0, 0.0),
+    )
+    (stroke,) = (each for each in stage_data(pushed).motions if each.group is Group.STROKE)
+    assert stroke.energy == pytest.approx({"drive": spring / (stack + spring), "back": stack / (stack + spring)}, rel=1e-9)
+
+
 def test_stress_is_that_of_the_whole_stroke_alone_and_of_the_load_alone() -> None:
     """Against the analysis of all corners, of which a stage without weight has one if its only actuator has one end."""
     mechanism = replace(fs.case("parallelogram"), gravity=(0.0, 0.0, 0.0))
