@@ -18,15 +18,17 @@ from flexstage.experiment.channels import Residues, gain_doubts
 from flexstage.experiment.comparison import Compared, ComparedMode, Measured, compare
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.pipeline import identification, usable_measurement
-from flexstage.experiment.records.record import Channel, InMemory, Record, in_memory
+from flexstage.experiment.records.record import Channel, InMemory, Record, Role, in_memory
 from flexstage.experiment.shapes_on_stage import stage_shapes
 from flexstage.experiment.virtual_rig.plan import volts_per_metre
 from flexstage.experiment.virtual_rig.rig import rig
 from flexstage.experiment.virtual_rig.setup import NoiseDrive, RigSetup
 from flexstage.mechanism.addresses.address import assign, set_value
+from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body, Inertia
+from flexstage.parts.spring import Spring
 from tests.models.made_tests import Noise, made
 from tests.models.stage_records import stage_record
 
@@ -261,6 +263,28 @@ def test_angles_are_compared_by_the_platforms_radius_of_gyration() -> None:
     body = Body(mass=9e9, centre=(0.0, 0.0, 0.0), inertia=Inertia(1e8, 2e8, 3e8))
     stage = replace(double_triangle(), bodies={**double_triangle().bodies, "platform": body})
     assert gyration(lumped(stage)) == pytest.approx(np.sqrt(0.2 / 9.0), rel=1e-8)
+
+
+def test_a_rigid_body_with_equal_inertias_has_modes_apart_at_its_sensors() -> None:
+    """Modes of a body with inertia m r^2 about all axes are orthogonal at its sensors: two modes mixed by an angle have the MAC cos^2."""
+    turn, pair = np.deg2rad(20.0), [1, 2]
+    body = Body(mass=1.0, centre=(0.01, 0.005, -0.008), inertia=Inertia(4e-4, 4e-4, 4e-4))
+    hung = Mechanism(
+        "body on a spring beside its centre",
+        parts={"spring": Spring(diagonal=(1e8, 2e8, 3e8, 5e4, 7e4, 9e4))},
+        bodies={"platform": body},
+        links={"spring": Link(("ground", "platform"), "spring", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))},
+    )
+    theory = platform_modes(hung, lumped(hung))
+    shapes = theory.platform_shapes
+    motions = ("x", "y", "z", "rx", "ry", "rz")
+    outputs = tuple(Channel(f"platform.{name}", "rad" if "r" in name else "m", Role.OUTPUT) for name in motions)
+    mixed = shapes.copy()
+    mixed[:, pair] = shapes[:, pair] @ np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    exact = made(STAGE, noise=Noise(frequency=0.0, model=0.0))
+    found = compare(hung, replace(exact, shapes=mixed.astype(complex), frequencies=theory.platform_frequencies, outputs=outputs))
+    wanted = [np.cos(turn) ** 2 if mode in pair else 1.0 for mode in range(6)]
+    assert [row.assurance for row in found.modes] == pytest.approx(wanted, abs=1e-6)
 
 
 # --- channels that are not what they are called ---
