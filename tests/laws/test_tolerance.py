@@ -1,5 +1,6 @@
 """Laws of tolerance studies: first order in the limit, moments of cubes, averaging, yields of linear responses, what is allowed."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -301,6 +302,25 @@ def test_a_drawn_stage_has_no_crosstalk_and_turned_copies_that_of_their_lines_of
         change[0] = np.concatenate([swung, np.cross(arm, swung)])
         wanted = -np.linalg.solve(mapping, change)
         np.testing.assert_allclose(found, wanted, atol=(0.01 if kind == "open" else 1e-3) * np.abs(wanted).max())
+
+
+def test_a_drawn_stage_has_no_crosstalk_at_a_named_point_wherever_its_reference_is():
+    """Commands move the nominal point alone; the pose at the point of a stage with scatter is independent of the platform's reference."""
+    stage = double_triangle()
+    platform = stage.bodies["platform"]
+
+    def with_platform(**changes):
+        return replace(stage, bodies={**stage.bodies, "platform": replace(platform, points={"tip": (0.03, -0.02, 0.05)}, **changes)})
+
+    first, second = with_platform(), with_platform(reference=(0.01, 0.04, -0.02))
+    asked = command(bench_of(first), "tip")
+    one = np.array([float(value) for value in poses(bench_of(first), asked)])
+    assert one.reshape(2, 6, 6) == pytest.approx(np.stack([np.eye(6)] * 2), abs=1e-9)
+    ours, theirs = (
+        np.array([float(value) for value in poses(bench_of(set_value(each, "B1.rotation.z", 1e-3)), asked)]) for each in (first, second)
+    )
+    assert np.abs(ours - one).max() > 1e-4
+    assert theirs == pytest.approx(ours, abs=1e-9)
 
 
 def test_volts_of_a_stack_that_reaches_farther_move_the_stage_farther():
