@@ -224,6 +224,25 @@ starts = 1
     assert (upper.value(upper.point) - lower.value(lower.point)) / 4.0 == pytest.approx(limit.price, rel=2e-3)
 
 
+@pytest.mark.parametrize("scale", ["", ", logarithmic = true"])
+@pytest.mark.parametrize(("way", "end"), [("maximise", 8e-3), ("minimise", 1e-3)])
+def test_the_price_of_the_end_of_a_range_is_the_slope_at_the_end(tmp_path, scale, way, end):
+    """The stiffness E w t / L of a post is proportional to its thickness: one metre more of thickness has the price k / t."""
+    text = f"""
+[variables]
+t = {{ address = "parts.post.thickness", from = "1 mm", to = "8 mm"{scale} }}
+[responses]
+k = "stiffness.z"
+[optimise]
+{way} = "k"
+starts = 1
+"""
+    found = optimise(*study_of(tmp_path, POST, text))
+    (limit,) = found.binding
+    assert limit.limit == pytest.approx(end)
+    assert limit.price == pytest.approx(found.value(found.point) / end, rel=1e-6)
+
+
 def test_of_several_contradictions_as_many_are_found_as_are_asked_for(tmp_path):
     limits = '[limits]\n"stiffness.z" = "at most 50 N/um"\n"frequency.platform.1" = "at least 40 Hz"\nheight = "at most 1 mm"\n'
     study, wanted = study_of(tmp_path, POST, post_variables() + limits + '[optimise]\nmaximise = "f1"\nstarts = 2')
