@@ -96,6 +96,22 @@ def test_the_stage_is_near_the_lumped_one() -> None:
     assert (stage.flexible <= 0.0).all()
 
 
+def test_bodies_lower_frequencies_by_what_stiffer_ones_raise_them() -> None:
+    """f depends on Young's modulus E of the bodies: their elasticity changes f by -d ln f / d ln E, if its share is small."""
+    stage = small_stage()
+    model, step = stage.read.model, 1e-3
+
+    def logarithms(factor: float) -> np.ndarray:
+        stiffness = {
+            name: replace(item, law=(factor if name.endswith("(body)") else 1.0) * item.law) for name, item in model.stiffness.items()
+        }
+        return np.log(platform_modes(small(), replace(model, stiffness=stiffness)).frequencies[:8])
+
+    slopes = (logarithms(1.0 + step) - logarithms(1.0 - step)) / (2.0 * step)
+    assert slopes.max() > 0.01
+    np.testing.assert_allclose(stage.flexible[:8], -slopes, rtol=0.01)
+
+
 def test_stress_of_a_pulled_rod() -> None:
     """F/A in the middle; the faces that stay plane hold the contraction and concentrate some."""
     read = read_solid(propped(20e-3), replace(COARSE, fineness=replace(COARSE.fineness, neck=0.7)), solids())
