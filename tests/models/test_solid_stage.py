@@ -20,6 +20,7 @@ from flexstage.parts.body import Body, Inertia
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.geometry.cad import cad
 from flexstage.solid.fea.solver.assemble import linear_model
+from flexstage.solid.fea.solver.casing import casing
 from flexstage.solid.fea.solver.component import components
 from flexstage.solid.results.read import SolidRead
 from flexstage.solid.results.resolution import Resolution
@@ -201,3 +202,23 @@ def test_the_yield_stress_of_a_body_is_that_of_its_weakest_solid() -> None:
     for materials, expected in ((limits, 1e8), ({**limits, "soft": replace(STEEL, yield_stress=None)}, np.nan)):
         read = cast("SolidRead", SimpleNamespace(mechanism=SimpleNamespace(materials=materials)))
         np.testing.assert_equal(_yield(read, assembly, "block"), expected)
+
+
+def test_a_casing_is_the_tube_that_makes_a_stack_a_thicker_rod() -> None:
+    """Of the ceramic's material, from 10 to 14 mm: G J/L in torsion, E I/L in bending, 12 E I/L^3 across, with I and J of a ring."""
+    size, inner, outer, poisson = 0.1, 10e-3, 14e-3, 0.25
+    young = 20e6 * size / (np.pi * inner**2 / 4.0)
+    second, polar = (np.pi * (outer**4 - inner**4) / part for part in (64.0, 32.0))
+    stack = Piezo(
+        stroke=1e-4,
+        stiffness=20e6,
+        length=size,
+        diameter=inner,
+        poisson=poisson,
+        bending_rigidity=young * np.pi * outer**4 / 64.0,
+    )
+    link = Link(("ground", "platform"), "stack", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    body = Body(mass=1.0, inertia=Inertia(1e-3, 1e-3, 1e-3))
+    law = casing(expand(Mechanism("tube", parts={"stack": stack}, bodies={"platform": body}, links={"stack": link})).links["stack"])
+    across, bending, torsion = 12.0 * young * second / size**3, young * second / size, young / (2.0 * (1.0 + poisson)) * polar / size
+    assert law == pytest.approx(np.diag([0.0, across, across, torsion, bending, bending]), rel=1e-9)
