@@ -129,7 +129,7 @@ def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
         if order.small is None or order.large is None:
             continue
         small, large = np.real(order.small), np.real(order.large)
-        failing = small >= large if order.strict else small > large * (1.0 + _SLACK)
+        failing = small >= large if order.strict else small - large > _SLACK * np.abs(large)
         if np.any(failing):
             at, values = first_failing(failing, small, large)
             result, other = (show(value, order.quantity, digits=6) for value in values)

@@ -29,7 +29,7 @@ _SIZES = ("cases", "bodies", "extra", "groups", "dead", "iterations", "heavy")
 _SETTINGS = ("size", "reach", "step", "gap", "limit")
 _ARRAYS = ("position", "turn", "held", "gravity", "body", "arm", "force", "residual", "stiffness", "status", "count", "moved", "lack")
 _TABLES = ("length", "rigidity", "form", "modes", "inner", "plate", "compliance", "trapeze", "stretch")
-_KNOWN = frozenset((*_TABLES, "inertia", "half", "natural", "rest"))
+_KNOWN = frozenset((*_TABLES, "inertia", "half", "shearing", "natural", "rest"))
 
 
 class _Group(ctypes.Structure):
