@@ -200,7 +200,7 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
     """Newton steps; the pseudo-inverse at the nominal position is used while convergence is fast."""
     relative = _relative(links, state)
     slope = _first_slope(links, state)
-    before = np.inf
+    before = size = np.inf
     for iteration in range(1, _STEPS + 1):
         step = -_times(slope, _residual(links, state, relative))
         state = _move(links, state, step)
