@@ -258,3 +258,11 @@ def test_compliance_needs_members():
     """Beam theory has no law of a compound: whoever asks for one is told so."""
     with pytest.raises(DesignError, match="kind cross_hinge"):
         compliance(CROSS, STEEL)
+
+
+def test_the_hub_of_a_cartwheel_is_a_uniform_disc():
+    """Second moments of a disc by its mean squares: r^2/4 across the axis, b^2/12 along it."""
+    hub = WHEEL.composition.bodies["hub"]
+    across, along = (0.5 * WHEEL.hub_diameter) ** 2 / 4.0, WHEEL.width**2 / 12.0
+    expected = 1e-3 * np.array([across + along, across + along, 2.0 * across])
+    np.testing.assert_allclose([hub.inertia.xx, hub.inertia.yy, hub.inertia.zz], expected, rtol=1e-12)

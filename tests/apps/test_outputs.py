@@ -213,6 +213,8 @@ def test_mat_holds_what_the_library_computes(flexstage: Command, tmp_path: Path)
     assert list(found["inputs"]) == [channel.name for channel in model.inputs]
     assert list(found["output_units"]) == [channel.unit for channel in model.outputs]
     assert found["frequencies_hz"] == pytest.approx(modes(model).frequencies)
+    first, *_ = np.atleast_1d(found["platform_modes"])  # counted from 1, as MATLAB does
+    assert found["frequencies_hz"][int(first) - 1] == pytest.approx(modes(model).platform_frequencies[0])
 
 
 def test_state_space_in_mat_has_the_natural_frequencies_and_the_static_gain(flexstage: Command, tmp_path: Path) -> None:

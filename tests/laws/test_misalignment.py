@@ -11,6 +11,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.misalignment import misalign
 from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Placement
@@ -18,6 +19,7 @@ from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.patch import patch
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
+from flexstage.spatial.frame import Frame
 from flexstage.spatial.rotation import exponential
 
 SHIFT = (1e-3, -2e-3, 0.5e-3)
@@ -79,3 +81,10 @@ def test_addresses_that_point_nowhere(address, said):
     with pytest.raises(DesignError) as caught:
         get(double_triangle(), address)
     assert said in str(caught.value)
+
+
+def test_an_instance_is_shifted_along_its_own_axes():
+    """In a frame that is turned by 90 degrees about z, x of the instance is y of the stage."""
+    at = Frame(exponential(np.array([0.0, 0.0, 0.5 * np.pi])), np.array([1.0, 2.0, 3.0]))
+    found = misalign(at, {"B2.shift.x": 1e-5}, "B2")
+    np.testing.assert_allclose(found.position, [1.0, 2.0 + 1e-5, 3.0], rtol=0.0, atol=1e-15)

@@ -166,3 +166,12 @@ def test_a_stage_inside_another_one_weighs_what_its_bodies_links_and_stack_weigh
     bodies = sum(float(body.mass.mass) for body in assembly.bodies.values())
     assert len(leaves) == len(assembly.links) - 1
     assert amplified(inner).mass == pytest.approx(bodies + blades + inner.parts["stack"].mass, rel=1e-12)
+
+
+def test_a_shear_piezo_bends_about_each_axis_by_its_own_second_moment():
+    """Both shear compliances are equal: those of the faces differ by L^3/12 (1/(E I_y) - 1/(E I_z))."""
+    flat = replace(SHEAR, depth=5 * mm)
+    young = flat.axial_stiffness * flat.length / (flat.width * flat.depth)
+    moments = flat.width * flat.depth / 12.0 * np.array([flat.depth**2, flat.width**2])  # about y, about z
+    expected = flat.length**3 / (12.0 * young) * (1.0 / moments[0] - 1.0 / moments[1])
+    assert flat.compliance[2, 2] - flat.compliance[1, 1] == pytest.approx(expected, rel=1e-12)
