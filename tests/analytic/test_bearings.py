@@ -51,6 +51,9 @@ def test_response_is_that_of_a_free_mass(bearing):
     np.testing.assert_allclose(
         fs.response(model, ["G"], ["motor"], grid, damping=fs.StructuralDamping()).values[:, 0, 0], by_hand, rtol=1e-6
     )
+    rayleigh, w = fs.RayleighDamping(200.0, 0.0), OMEGA * grid  # a force alpha m per velocity
+    damped = FORCE / ((MASS + COIL) * (200.0j * w - w**2))
+    np.testing.assert_allclose(fs.response(model, ["platform.x"], ["motor"], grid, damping=rayleigh).values[:, 0, 0], damped, rtol=1e-8)
     found = fs.modes(model)
     assert found.frequencies[0] == 0.0
     assert found.names[0] == "x"

@@ -14,6 +14,7 @@ from flexstage.analysis.dynamics.random_response import Rate, Spectrum, random_r
 from flexstage.analysis.dynamics.response import default_frequencies, response, transmissibility
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.frequency import direct
@@ -22,6 +23,7 @@ from flexstage.models.linear.port import input_names, ports
 from flexstage.models.linear.state_space import state_space
 from flexstage.models.linear.static import part_deformation, static_gain
 from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
 from flexstage.spatial.frame import COMPONENTS
 from tests.laws.models import BODIES, FORCES, laws, linear_model, models, ratios, seeds
 
@@ -278,3 +280,11 @@ def test_refusals_name_the_object_and_the_remedy():
     wrong = Spectrum(np.ones(2), np.array([2.0, 1.0]))
     with pytest.raises(DesignError, match="ascend"):
         random_response(model, ["platform.x"], {"u": wrong}, (1.0, 10.0), damping=ModalDamping(0.01))
+
+
+def test_a_slow_rotation_of_the_ground_turns_a_point_about_the_reference_in_both_models():
+    """Rigidly: the point moves across the arm from the platform's reference, 6 mm above it."""
+    stage = case("hexapod")
+    for model in (mapped(stage), lumped(stage)):
+        found = response(model, ["sample.x", "sample.y"], ["ground.rx", "ground.ry"], np.array([1.0])).values[0]
+        np.testing.assert_allclose(found, [[0.0, 6e-3], [-6e-3, 0.0]], atol=1e-6)
