@@ -91,6 +91,14 @@ def test_a_leaf_with_a_middle_as_thick_as_its_ends_shears_as_a_leaf():
     np.testing.assert_allclose(compliance(reinforced, lying), compliance(Leaf(*sizes), lying), rtol=1e-12)
 
 
+def test_a_plate_leaf_shears_in_the_plane_of_bending():
+    """Twice the shear modulus of that plane halves L / (k G A) of the compliance across the leaf."""
+    lying, leaf = seen((1.0, 1.0, 0.0), (0.0, 0.0, 1.0)), Leaf("silicon", 6.0 * mm, 0.5 * mm, 10.0 * mm)
+    soft, stiff = (compliance(leaf, replace(lying, other_shear=factor * lying.shear_across))[1, 1] for factor in (1.0, 2.0))
+    expected = 0.5 * cowper_rectangle(lying.contraction) * 6e-3 / (lying.shear_across * 5e-6)
+    assert soft - stiff == pytest.approx(expected, rel=1e-6)
+
+
 def test_modes_of_a_leaf_shear_in_the_plane_of_bending():
     """The frequency of a leaf of ten thicknesses, bent with 79.5 or 50.9 GPa, differs by 2.7 %."""
     lying, leaf = seen((1.0, 1.0, 0.0), (0.0, 0.0, 1.0)), Leaf("silicon", 10.0 * mm, 1.0 * mm, 5.0 * mm, LeafSection.BEAM, inner_modes=1)
