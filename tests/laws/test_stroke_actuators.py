@@ -175,3 +175,10 @@ def test_a_shear_piezo_bends_about_each_axis_by_its_own_second_moment():
     moments = flat.width * flat.depth / 12.0 * np.array([flat.depth**2, flat.width**2])  # about y, about z
     expected = flat.length**3 / (12.0 * young) * (1.0 / moments[0] - 1.0 / moments[1])
     assert flat.compliance[2, 2] - flat.compliance[1, 1] == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_faces_of_an_amplified_actuator_have_its_inertia_together():
+    """Both faces move with a rigid motion of the actuator: its kinetic energy is that of its mass and inertia."""
+    part = Amplified(stroke=1e-4, diagonal=STIFF, mass=0.1, inertia=Inertia(1e-5, 2e-5, 3e-5))
+    rigid = np.vstack([np.eye(6), np.eye(6)])
+    np.testing.assert_allclose(rigid.T @ part.carried @ rigid, np.diag([0.1, 0.1, 0.1, 1e-5, 2e-5, 3e-5]), rtol=1e-12, atol=1e-20)
