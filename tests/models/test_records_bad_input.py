@@ -274,6 +274,8 @@ def test_frequencies_have_their_stated_unit(unit: str, highest: float | None, tm
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["frequencies"], file["responses"] = np.linspace(1.0, 20.0, 20), np.ones((20, 1, 1), dtype=complex)
         file["frequencies"].attrs["units"] = unit
+        file["averages"] = 10.0
+        file["averages"].attrs["units"] = "1"  # a count
     if highest is None:
         assert f'frequencies: wrong unit (got "{unit}"' in refusal(tmp_path / "a.h5")
     else:

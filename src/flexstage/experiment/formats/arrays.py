@@ -25,8 +25,8 @@ from flexstage.experiment.records.unit import plain_unit
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
 """Format identifiers in files written by flexstage."""
 _LISTED = 24
-_SCALES = TIME_SCALES | {"Hz": 1.0, "kHz": 1e3}
-"""Factors of the units of times, steps, rates and frequencies to s and Hz."""
+_SCALES = TIME_SCALES | {"Hz": 1.0, "kHz": 1e3, "1": 1.0}
+"""Factors of the units of times, steps, rates, frequencies and counts to s, Hz and 1."""
 _TIMED = "time = seconds({0}.Properties.RowTimes); samples = {0}.Variables; names = {0}.Properties.VariableNames"
 _SAVED = {
     "timeseries": "time = {0}.Time; samples = {0}.Data",
