@@ -68,6 +68,9 @@ def _first_difference(old, new):
         (Row("a", "", "100", 90.0, tolerance=beam_error(-10.0)), Verdict.AGREES),
         (Row("a", "", "100", 100.0, tolerance=beam_error(-10.0)), Verdict.DISAGREES),
         (Row("a", "", "100", math.nan), Verdict.DISAGREES),
+        (Row("a", "", "100", 140.0, least=True), Verdict.AGREES),
+        (Row("a", "", "100", 99.9, least=True), Verdict.DISAGREES),
+        (Row("a", "", "100", math.nan, least=True), Verdict.DISAGREES),
     ],
 )
 def test_verdicts(row, verdict):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Body
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
+from flexstage.studies.synthesis.specification import loads_specification
 from tests.analytic.test_inner_modes import stage as clamped_free
 from tools.validation import displaced
 from tools.validation.row import Row, Scale, Section, Tolerance, relative
@@ -23,7 +26,7 @@ _UNIT = 210e9 * 0.05 * 0.005**3 / 12.0 / 0.25**2
 
 def sections() -> list[Section]:
     """A section for each source."""
-    return [_telescope(), _mirror(), _guide(), _resonator(), _suspension(), _leaf(), *displaced.sections()]
+    return [_telescope(), _mirror(), _guide(), _resonator(), _suspension(), _leaf(), *displaced.sections(), _specification()]
 
 
 def _motion(model: fs.LinearModel, output: str, load: str) -> float:
@@ -135,3 +138,29 @@ def _leaf() -> Section:
         "cannot warp."
     )
     return Section("A wide leaf", text, rows, repeat=".venv/bin/python -m pytest tests/analytic/test_inner_modes.py -k component_library")
+
+
+def _specification() -> Section:
+    """The strokes that the paper requires, and those of the stages found by `flexstage design` for the tutorial's specification."""
+    text = Path(__file__).parents[2].joinpath("docs", "tutorials", "specification.md").read_text(encoding="utf-8")
+    found = fs.design(loads_specification(text.partition("```toml file=spec.toml\n")[2].partition("```")[0]))
+    required = {
+        "x": ("50", "um"),
+        "y": ("50", "um"),
+        "z": ("150", "um"),
+        "rx": ("733", "urad"),
+        "ry": ("733", "urad"),
+        "rz": ("244", "urad"),
+    }
+    rows = tuple(
+        Row(f"{answer.architecture}, stroke {axis}", "paper, required", printed, math.floor(1e6 * stroke), unit, relative(0.0), least=True)
+        for answer in found.answers
+        for axis, (printed, unit) in required.items()
+        for stroke in (answer.values[f"stroke.{axis}"],)
+    )
+    about = (
+        "Stages found by `flexstage design` for the required strokes and the box of Shin & Moon, with the specification of the "
+        "[tutorial](../tutorials/specification.md), where payload and opening are assumed. Strokes are rounded down. The paper gives no "
+        "frequency to compare: the tutorial compares them with the case `double-triangle`."
+    )
+    return Section("Stages found for the paper's strokes", about, rows, repeat="flexstage design spec.toml -o answers")

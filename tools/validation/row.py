@@ -46,7 +46,8 @@ class Tolerance:
 class Row:
     """`what` is compared; the `reference` as its `source` prints it, and `ours`, both in `unit`.
 
-    Without `tolerance` ours must round to the digits printed. `recorded` says that they are known to differ.
+    Without `tolerance` ours must round to the digits printed. `recorded` says that they are known to differ. `least`: the reference is
+    a requirement, and ours must not be smaller.
     """
 
     what: str
@@ -56,6 +57,7 @@ class Row:
     unit: str = ""
     tolerance: Tolerance | None = None
     recorded: bool = False
+    least: bool = False
 
     @property
     def difference(self) -> float:
@@ -71,15 +73,16 @@ class Row:
     @property
     def verdict(self) -> Verdict:
         """Whether ours is within the tolerance, and whether that was to be expected."""
-        close = abs(self.difference - (self.allowed.bias or 0.0)) <= self.allowed.value
+        close = self.difference >= 0.0 if self.least else abs(self.difference - (self.allowed.bias or 0.0)) <= self.allowed.value
         if self.recorded:
             return Verdict.UNEXPECTED if close else Verdict.RECORDED
         return Verdict.AGREES if close else Verdict.DISAGREES
 
     def cells(self) -> tuple[str, ...]:
         """The row as texts: what, source, reference, ours, unit, difference, tolerance, verdict."""
+        allowed = "at least" if self.least else self.allowed.text()
         ours, unit = like(self.reference, self.ours), "" if self.unit == "1" else self.unit
-        return (self.what, self.source, self.reference, ours, unit, self._difference(), self.allowed.text(), self.verdict.value)
+        return (self.what, self.source, self.reference, ours, unit, self._difference(), allowed, self.verdict.value)
 
     def _difference(self) -> str:
         relative = self.allowed.scale is Scale.RELATIVE
