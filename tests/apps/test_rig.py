@@ -184,5 +184,8 @@ def test_a_significant_load_is_in_the_record_and_in_theory(flexstage: Command, t
     mode = json.loads((tmp_path / "c.json").read_text())["modes"][0]
     assert mode["theory_hz"] == pytest.approx(loaded, rel=1e-9)
     assert mode["experiment"]["frequency_hz"] == pytest.approx(loaded, rel=1e-3)
-    ended = flexstage("update", "upright.toml", "--parameters", "steel.young", "--record", "r.h5", "-o", "u.toml")
+    ended = flexstage("update", "upright.toml", "--parameters", "steel.young", "--record", "r.h5", "-o", "u.toml", "--json", "u.json")
     assert "the update uses the unloaded stage, but weight, payloads and forces change" in ended.err
+    updated = json.loads((tmp_path / "u.json").read_text())
+    nominal = fs.modes(fs.lumped(fs.load(tmp_path / "u.toml"))).frequencies[0]
+    assert updated["compared"]["modes"][0]["theory_hz"] == pytest.approx(nominal, rel=1e-6)

@@ -193,6 +193,9 @@ scatter.hole = {{ address = "parts.neck.thickness", normal = "1 um" }}
         assert abs(np.mean(scatter)) < 4.0 * error / np.sqrt(scatter.size) + 0.01
         assert np.std(scatter) == pytest.approx(error, rel=0.5)
         assert np.all(each.worst >= each.usual)
+        places = [[list(study.columns).index(f"{each.kind}.{row}.{column}") for column in each.coordinates] for row in COMPONENTS]
+        mean_square = np.mean((errors - np.mean(errors, axis=0)) ** 2, axis=0)[np.array(places)]
+        np.testing.assert_allclose(each.deviation**2, mean_square * copies / (copies - 1), rtol=1e-9)  # unbiased
 
 
 def test_contributions_are_shares_of_the_variance(guide):

@@ -112,6 +112,14 @@ def test_utilisation_is_the_worst_corner(drawn, seed):
     assert np.all(polytope.contains(corners * (1.0 - 1e-12)))
 
 
+def test_an_actuator_biased_at_its_end_is_used_not_at_all_or_beyond_its_range():
+    mapping = Matrix(np.diag([1.0, 1.0]), ("A", "B"), ("x", "y"), "1")
+    limits = StrokeLimits(("A", "B"), np.array([0.0, -1e-6]), np.array([2e-6, 1e-6]))
+    assert utilisation(mapping, limits, {"x": 0.0, "y": 5e-7}).ratio.tolist() == [0.0, 0.5]
+    beyond = utilisation(mapping, limits, {"x": 1e-9, "y": 0.0})
+    assert (beyond.ratio.tolist(), bool(beyond.reachable), float(beyond.scale)) == ([np.inf, 0.0], False, 0.0)
+
+
 def replace_limits(limits):
     least = np.minimum(-limits.low, limits.high)
     return StrokeLimits(limits.actuators, -least, least)

@@ -253,7 +253,16 @@ def test_times_that_are_none_are_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "value", "unit", "rate"),
-    [("rate", 2.0, "kHz", 2000.0), ("step", 2.0, "ms", 500.0), ("step", 0.5, "s", 2.0), ("rate", 2.0, "", 2.0), ("step", 2.0, "m", None)],
+    [
+        ("rate", 2.0, "kHz", 2000.0),
+        ("rate", 2.0, "1/s", 2.0),
+        ("step", 2.0, "ms", 500.0),
+        ("step", 0.5, "s", 2.0),
+        ("rate", 2.0, "", 2.0),
+        ("step", 2.0, "m", None),
+        ("step", 2.0, "kHz", None),
+        ("rate", 2.0, "ms", None),
+    ],
 )
 def test_a_rate_or_step_has_its_stated_unit(name: str, value: float, unit: str, rate: float | None, tmp_path: Path) -> None:
     """A unit in the file counts: it is converted, or refused, but never ignored."""
@@ -269,7 +278,7 @@ def test_a_rate_or_step_has_its_stated_unit(name: str, value: float, unit: str, 
         assert found.rate == rate
 
 
-@pytest.mark.parametrize(("unit", "highest"), [("kHz", 20_000.0), ("Hz", 20.0), ("rad/s", None)])
+@pytest.mark.parametrize(("unit", "highest"), [("kHz", 20_000.0), ("Hz", 20.0), ("rad/s", None), ("ms", None)])
 def test_frequencies_have_their_stated_unit(unit: str, highest: float | None, tmp_path: Path) -> None:
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["frequencies"], file["responses"] = np.linspace(1.0, 20.0, 20), np.ones((20, 1, 1), dtype=complex)

@@ -9,12 +9,12 @@ from typing import Annotated, ClassVar
 import numpy as np
 import scipy
 
-from flexstage.analysis.complete import loaded_model, platform_modes
+from flexstage.analysis.complete import loaded_model, platform_modes, read
 from flexstage.analysis.dynamics.modes import Modes, clusters
 from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
 from flexstage.base.record import INNER, VIEW, Graded, Heading, Layout
@@ -185,15 +185,17 @@ class Compared(InNotebook):
 
 
 @check_arguments
-def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
+def compare(
+    mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED, loaded: bool = True
+) -> Compared:
     """Compare the platform's modes in the model, in finite elements (optional) and in the test.
 
     Shapes are compared at the outputs common to record and stage by the modal assurance criterion (MAC, Allemang & Brown 1982). For
     measured shapes, the real part is used. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to
     modes of the model so that the sum of the MACs of all pairs is largest. Frequency differences have a small weight, which decides between
     shapes that the sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5.
-    Measured modes may also be paired with local modes of the model. If the permanent load is significant, the model describes the loaded
-    stage (see `load_effect`). Raises `DesignError` without a common output.
+    Measured modes may also be paired with local modes of the model. If `loaded` is true and the permanent load is significant, the model
+    describes the loaded stage (see `load_effect`). Raises `DesignError` without a common output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record
@@ -203,9 +205,9 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         ...
     flexstage.base.finding.DesignError: y: unknown output; ...
     """
-    linear = loaded_model(mechanism, model)
-    require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Use the model lumped or mapped")])
-    assert linear is not None  # noqa: S101  refused above
+    linear = (loaded_model if loaded else read)(mechanism, model)
+    if linear is None:
+        raise refuse("model", "rigid bodies have no modes", "Use the model lumped or mapped")
     theory = platform_modes(mechanism, linear)
     sensors = shared_sensors(linear, experiment)
     candidates = _candidates(theory, experiment)

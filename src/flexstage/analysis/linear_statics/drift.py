@@ -98,8 +98,9 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     """Compute the thermal drift of a stage: free expansion of bodies and parts, redistributed elastically by the links, with strokes fixed.
 
     `ground` names the ground's material (default: from `ground_of`; `none`: no expansion). Motions are relative to the ground's `datum`. A
-    stage of one material, including the ground, expands without stress. For a model `linearise(state, inner=False)`, the expansion of the
-    nominal stage is combined with the stiffness of the loaded stage.
+    stage of one material, including the ground, expands without stress. Springs, shear piezos, amplified actuators and compliance matrices
+    that replace no part do not expand: compute their expansion separately. For a model `linearise(state, inner=False)`, the expansion of
+    the nominal stage is combined with the stiffness of the loaded stage.
 
     Raises `DesignError` for missing expansion coefficients, an unknown ground material, or locked degrees of freedom that block expansion.
     Models whose stiffness is not assembled from links are refused: mapped models, and linearised models with `inner` coordinates.

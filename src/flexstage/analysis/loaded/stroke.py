@@ -152,7 +152,7 @@ def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], s
             yield "stiffness", (lambda: _stiffness(points.about, drive, conjugate), f"{force}/{units[component]}")
     twist = state.twist(PLATFORM) - (0.0 if rest is None else rest.twist(PLATFORM))
     yield from (
-        (f"platform.{name}", (partial(_take, twist, place), units[name]))
+        (f"platform.{name}", (partial(np.take, twist, place, -1), units[name]))
         for place, name in enumerate(COMPONENTS)
         if f"platform.{name}" != drive
     )
@@ -163,10 +163,6 @@ def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], s
     yield "stress", (lambda: np.max(points.strained.stress, axis=-1, initial=0.0), "Pa")
     yield "strain", (lambda: np.max(points.strained.largest, axis=-1, initial=0.0), "1")
     yield "unstable", (lambda: np.where(points.motions < 0, np.nan, points.motions), "1")
-
-
-def _take(twist: Array, place: int) -> Array:
-    return twist[..., place]
 
 
 def _lost(ideal: Kinematics, drive: str, strokes: Array, twist: Array) -> Array:

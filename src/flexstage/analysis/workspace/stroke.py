@@ -111,7 +111,7 @@ class Utilisation(Result):
     @property
     def ratio(self) -> Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used")]:
         """Demand divided by available stroke (..., n); above 1, the corner of the box is out of reach."""
-        return self.demand / self.available
+        return np.divide(self.demand, self.available, out=np.where(self.demand > 0.0, np.inf, 0.0), where=self.available > 0.0)
 
     @property
     def reachable(self) -> Annotated[Array, VIEW]:
@@ -131,7 +131,7 @@ def beside(points: Array, depth: int) -> Array:
     (64, 1, 6)
     """
     missing = max(0, depth - (points.ndim - 2))
-    return points.reshape(points.shape[0], *(1,) * missing, *points.shape[1:])
+    return np.expand_dims(points, tuple(range(1, 1 + missing)))
 
 
 def stacks(mechanism: Mechanism) -> dict[str, ChargedActuator]:

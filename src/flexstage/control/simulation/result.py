@@ -149,6 +149,8 @@ def simulation_result(given: Machine, found: Series) -> Simulated:
 def tracking(found: Simulated) -> Matrix:
     """Compute rms and peak tracking errors by coordinate: those measured by the loop, and those of the true platform pose.
 
+    The rms values are over all samples, including any rest at the end of the trajectory, which lowers them.
+
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
     >>> from flexstage.control.simulation.run import simulate

@@ -25,8 +25,8 @@ from flexstage.experiment.records.unit import plain_unit
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
 """Format identifiers in files written by flexstage."""
 _LISTED = 24
-_SCALES = TIME_SCALES | {"Hz": 1.0, "kHz": 1e3, "1": 1.0}
-"""Factors of the units of times, steps, rates, frequencies and counts to s, Hz and 1."""
+_HERTZ = {"Hz": 1.0, "kHz": 1e3, "1/s": 1.0}
+"""Hertz per unit of rates and frequencies."""
 _TIMED = "time = seconds({0}.Properties.RowTimes); samples = {0}.Variables; names = {0}.Properties.VariableNames"
 _SAVED = {
     "timeseries": "time = {0}.Time; samples = {0}.Data",
@@ -105,28 +105,27 @@ class Contents:
             (each for each in self.find(names) if not each.is_complex and 1 < max(each.shape, default=0) == np.prod(each.shape)), None
         )
 
-    def number(self, *names: str) -> float | None:
-        """Return the first number with one of these names; `None` if absent.
+    def number(self, units: Mapping[str, float], *names: str) -> float | None:
+        """Return the first number with one of these names, converted by the factor of its unit; `None` if absent.
 
-        >>> Contents("a.mat", (held_array("data.fs", np.array([[50.0]])),)).number("data.fs")
+        >>> Contents("a.mat", (held_array("data.fs", np.array([[50.0]])),)).number({"Hz": 1.0}, "data.fs")
         50.0
         """
-        found: list[Attribute | None] = [
-            float(np.real(each.whole().ravel()[0])) * self.scale(each) for each in self.find(names) if np.prod(each.shape) == 1
-        ]
-        found += [self.said.get(name) for name in names]
-        return next((value for value in found if isinstance(value, float)), None)
+        for each in self.find(names):
+            if np.prod(each.shape) == 1:
+                return each.whole().item().real * self.scale(each, units)
+        return next((value for name in names if isinstance(value := self.said.get(name), float)), None)
 
-    def scale(self, variable: Variable) -> float:
-        """Return the factor of a variable's unit to s or Hz; 1 without a unit."""
-        unit = plain_unit(" ".join(_texts(variable.attributes.get("units", "s"))) or "s")
-        if unit not in _SCALES:
-            raise refuse(
-                f"{self.where}: {variable.name}",
-                f'wrong unit (got "{unit}", expected s or Hz)',
-                "Use s, ms, us, Hz or kHz, or specify the rate (option rate)",
-            )
-        return _SCALES[unit]
+    def scale(self, variable: Variable, units: Mapping[str, float]) -> float:
+        """Return the factor of a variable's unit, which must be one of `units`; 1 without a unit."""
+        stated = " ".join(_texts(variable.attributes.get("units", "")))
+        unit = plain_unit(stated)
+        if not stated:
+            return 1.0
+        if unit not in units:
+            what = f'wrong unit (got "{unit}", expected {" or ".join(units)})'
+            raise refuse(f"{self.where}: {variable.name}", what, "Use one of these units, or specify the rate (option rate)")
+        return units[unit]
 
     def texts(self, *names: str) -> tuple[str, ...]:
         """Return the list of strings with the first of these names that exists; empty if none exists."""
@@ -265,20 +264,25 @@ def _record(contents: Contents, chosen: tuple[Variable, ...], options: Options) 
     clock = _clock(contents, time, options)
     axes = _axes(contents, chosen, time, options)
     samples = side_by_side([variable.samples(axis) for variable, axis in axes])
-    clock = clock if time is not None else replace(clock, start=contents.number("start") or 0.0)
+    clock = clock if time is not None else replace(clock, start=contents.number(TIME_SCALES, "start") or 0.0)
     name, channels = contents.text("name"), _channels(contents, axes, options.arrays)
     return clocked_record(channels, samples, clock, options, name=name, where=contents.where)
 
 
 def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock:
-    stated = options.rate or contents.number(*options.arrays.rate) or 1.0 / (contents.number(*options.arrays.step) or np.inf) or None
+    stated = (
+        options.rate
+        or contents.number(_HERTZ, *options.arrays.rate)
+        or 1.0 / (contents.number(TIME_SCALES, *options.arrays.step) or np.inf)
+        or None
+    )
     if time is None and stated is None:
         advice = 'Assign the time: "time=...", "rate=..." or "step=..." (option array), or specify the rate (option rate)'
         raise refuse(contents.where, f"no times and no rate. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
     times = time.samples(int(np.argmax(time.shape)))
-    return determine_clock(times, options, f"{contents.where}: {time.name}", scale=contents.scale(time), stated=stated)
+    return determine_clock(times, options, f"{contents.where}: {time.name}", scale=contents.scale(time, TIME_SCALES), stated=stated)
 
 
 def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | None, options: Options) -> list[tuple[Variable, int]]:
@@ -332,7 +336,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     lines = contents.vector(options.arrays.frequencies)
     if lines is None:
         raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign the frequencies (option array "frequencies=...")')
-    frequencies = lines.whole().ravel() * contents.scale(lines)
+    frequencies = lines.whole().ravel() * contents.scale(lines, _HERTZ)
     problem = rising_problem(frequencies)
     if problem is not None:
         raise refuse(f"{contents.where}: {lines.name}", problem, "Export each frequency once, from the lowest to the highest")
@@ -343,7 +347,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
         shapes = ", ".join(f"{each.name} {each.shape}" for each in chosen)
         raise refuse(contents.where, f"different numbers of inputs: {shapes}", "Name the correct responses (option array)")
     values = np.concatenate(cubes, axis=1)
-    averages = contents.number("averages")
+    averages = contents.number({"1": 1.0}, "averages")
     several = len(chosen) == values.shape[1]
     own = _own_names(list(chosen), [1] * len(chosen)) if several else tuple(f"y{number + 1}" for number in range(values.shape[1]))
     outputs = _side(contents, "output", own, options.outputs)

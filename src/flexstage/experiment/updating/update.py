@@ -296,10 +296,10 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     the standard deviations of data and priors. The posterior covariance is (J^T W J + S^-1)^-1 with the derivatives J of g, the weights W =
     diag(1/sigma^2) and the prior covariance S = diag(sigma_p^2).
 
-    The data d are the logarithms of the modes' frequencies, paired as in `compare`; for repeated modes, the square root of their mean
-    squared frequency is used. The standard deviations sigma of the data include the identified standard deviations and the model error.
-    With a `gain_error`, static gains are also data. Intervals are valid if frequencies are nearly linear in the logarithms x within the
-    intervals.
+    The data d are the logarithms of the modes' frequencies, paired as in `compare` with `loaded=False`; for repeated modes, the square
+    root of their mean squared frequency is used. The standard deviations sigma of the data include the identified standard deviations and
+    the model error. With a `gain_error`, static gains are also data. Intervals are valid if frequencies are nearly linear in the logarithms
+    x within the intervals.
 
     Raises `DesignError` for parameters that are unknown, ambiguous, zero or without effect, for fewer data than parameters, for a record
     without the stage's gauges, and if the iteration does not converge.
@@ -309,7 +309,7 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     gains = None
     if known.gain_error is not None:
         gains = measured_gains(mechanism, model, experiment, shared_sensors(model, experiment))
-    compared = compare(freed.mechanism, experiment)
+    compared = compare(freed.mechanism, experiment, loaded=False)
     rows = mode_rows(freed.mechanism, compared, experiment)
     require(_too_few_data(experiment, rows, freed, gains))
     here, first, steps = np.zeros(len(freed.names)), None, 0
@@ -320,7 +320,7 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
         if first is None:
             first = found
             require(_without_effect(found.slopes, freed, gains))
-        compared = compare(found.state.mechanism, experiment)
+        compared = compare(found.state.mechanism, experiment, loaded=False)
         again = mode_rows(found.state.mechanism, compared, experiment)
         if same_pairs(rows, found.state, again):
             return _as_result(data, found, compared, steps)

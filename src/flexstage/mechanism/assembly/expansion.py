@@ -52,8 +52,9 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """Compute all expansion coefficients; `ground` names the ground's material (default: `ground_of`; `none`: no expansion).
 
     A body has the material of its heaviest solid; without solids, the common material of its links. Compliance matrices expand like the
-    drawn parts that they replace. Compliance matrices that replace no part, and ideal joints, have no length and no expansion. Raises
-    `DesignError` with a list of all materials and stacks without a coefficient and all bodies of unknown material.
+    drawn parts that they replace. Expansion is neglected for compliance matrices that replace no part, ideal joints, springs, shear piezos
+    and amplified actuators. Raises `DesignError` with a list of all materials and stacks without a coefficient and all bodies of unknown
+    material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = expansion(double_triangle(), ground="steel")

@@ -283,7 +283,7 @@ def _crosstalk(study: Tolerance, values: Array, slope: Slopes, kind: str) -> Cro
         coordinates=tuple(coordinates),
         nominal=slope.values[np.array(places)] - own,
         mean=errors.mean(axis=0) if found else empty,
-        deviation=errors.std(axis=0) if found else empty,
+        deviation=errors.std(axis=0, ddof=1) if len(errors) > 1 else empty,
         usual=np.percentile(np.abs(errors), 95, axis=0) if found else empty,
         worst=np.abs(errors).max(axis=0) if found else empty,
     )

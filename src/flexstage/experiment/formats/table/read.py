@@ -52,7 +52,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     layout, arrays = read_layout(path), options.arrays
     said = _said(layout)
     own = Contents(str(path), (), said)
-    length = own.number("length")
+    length = own.number({}, "length")
     samples = complete_rows(path, layout, options, None if length is None else int(length), closed=True)
     require(_unknown_names(path, layout, arrays))
     time, lines = _column(layout, arrays.time), _column(layout, arrays.frequencies)
