@@ -19,11 +19,12 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.storage.document import as_text
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.mechanism.geometry.contact import contact_findings
+from flexstage.models.flexible_bodies import body_flexibilities
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis import answers, bounds
 from flexstage.studies.synthesis.answers import design, joint_front
 from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
-from flexstage.studies.synthesis.corrections import displaced_values, missed_limits
+from flexstage.studies.synthesis.corrections import displaced_values, elastic_values, missed_limits
 from flexstage.studies.synthesis.pairs import CandidatePair, shortfalls
 from flexstage.studies.synthesis.search import Answer, FailedPair, search
 from flexstage.studies.synthesis.show.report import answer_report
@@ -154,7 +155,7 @@ def test_levers_with_mass_do_not_exceed_the_bound_of_forces() -> None:
 
 @pytest.mark.parametrize("name", architectures())
 def test_architectures_have_no_clash_for_any_values(name: str, tmp_path: Path) -> None:
-    """Random values in the ranges: no outlines overlap or touch, and every end lies on a face; no stage exceeds the bound."""
+    """Random values in the ranges: no clash, every end lies on a face, every body is connected, and no stage exceeds its bound."""
     spec = specification(name, tmp_path)
     architecture, rng = architectures()[name], np.random.default_rng(4)
     actuators = catalogue_actuators(spec)[architecture.kind]
@@ -169,6 +170,8 @@ def test_architectures_have_no_clash_for_any_values(name: str, tmp_path: Path) -
         if any(float(stage.numbers[name].value) < 0.0 for name in ("rim", "gap", "lap") if name in stage.numbers):
             continue  # excluded by a limit of the architecture
         assert contact_findings(stage) == ()
+        if "stoutness" not in stage.numbers or float(stage.numbers["stoutness"].value) > 0.25:
+            assert body_flexibilities(stage).reasons == {}  # every body is connected, and none too thin for the estimate
         if actuator.kind != "voice_coil":
             with suppress_unstable():
                 assert_below_bound(stage, spec, bounds.stroke_energy(actuator.stroke, actuator.stiffness, architecture.count))
@@ -223,6 +226,15 @@ def test_an_answer_keeps_its_requirements_and_stays_below_its_bound() -> None:
     assert answer.efficiency is not None
     assert 0.0 < answer.efficiency <= 1.0
     assert not [each for each in answer.warnings if "flexibility" not in each]
+
+
+def test_an_unknown_flexibility_is_not_taken_as_rigid() -> None:
+    """A lug that does not reach its disc: the values with elastic bodies are unknown, not those of rigid bodies."""
+    text = architectures()["tilt"].text
+    apart = fs.loads(text.replace('leaf_length = "14 mm"', 'leaf_length = "30 mm"'))
+    assert elastic_values(fs.loads(text)).values["frequency.1"] < required_values(fs.loads(text))["frequency.1"]
+    with pytest.raises(DesignError, match=r"bodies.platform: unknown flexibility: its outlines are not connected"):
+        elastic_values(apart)
 
 
 def test_elastic_bodies_keep_the_required_frequency() -> None:

@@ -11,7 +11,7 @@ from flexstage.analysis.assessment.judge import Estimate, bench_of, required_val
 from flexstage.analysis.assessment.measures import clearance, safety_at_strokes, stroke
 from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
 from flexstage.analysis.bench import StageResults
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.units.unit import show
 from flexstage.mechanism.geometry.contact import TOUCHING, Gap, least_gap
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -35,11 +35,15 @@ Estimator = Callable[[Mechanism], Estimate]
 def elastic_values(stage: Mechanism) -> Estimate:
     """Return the required quantities of a stage with elastic bodies, whose flexibility is estimated from outlines.
 
+    Raises `DesignError` if the flexibility of a body is unknown, for example because its outlines are not connected.
+
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> round(elastic_values(parallelogram()).values["frequency.platform.1"])
     866
     """
-    return Estimate(required_values(stage, with_flexible_bodies(bench_of(stage).model, stage, body_flexibilities(stage).found)))
+    known = body_flexibilities(stage)
+    require(Finding(f"bodies.{name}", f"unknown flexibility: {reason}", "Connect its outlines") for name, reason in known.reasons.items())
+    return Estimate(required_values(stage, with_flexible_bodies(bench_of(stage).model, stage, known.found)))
 
 
 def displaced_values(stage: Mechanism) -> Estimate:
