@@ -118,14 +118,11 @@ class Contents:
 
     def scale(self, variable: Variable, units: Mapping[str, float]) -> float:
         """Return the factor of a variable's unit, which must be one of `units`; 1 without a unit."""
-        stated = " ".join(_texts(variable.attributes.get("units", "")))
-        unit = plain_unit(stated)
-        if not stated:
-            return 1.0
-        if unit not in units:
+        unit = plain_unit(" ".join(_texts(variable.attributes.get("units", ""))))
+        if unit and unit not in units:
             what = f'wrong unit (got "{unit}", expected {" or ".join(units)})'
             raise refuse(f"{self.where}: {variable.name}", what, "Use one of these units, or specify the rate (option rate)")
-        return units[unit]
+        return units.get(unit, 1.0)
 
     def texts(self, *names: str) -> tuple[str, ...]:
         """Return the list of strings with the first of these names that exists; empty if none exists."""

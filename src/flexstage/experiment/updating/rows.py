@@ -64,7 +64,7 @@ def mode_rows(mechanism: Mechanism, compared: Compared, experiment: Identified) 
         measured = tuple(row.experiment.index for row in rows if row.experiment is not None)
         if measured:
             names = dict.fromkeys(row.name for row in rows)
-            label = f"mode {', '.join(str(number) for number in numbers)} ({', '.join(names)})"
+            label = f"mode {', '.join(map(str, numbers))} ({', '.join(names)})"
             modes = tuple(places[number - 1] for number in numbers)
             found.append(ModeRow(label, modes, measured, *_mean(experiment, measured)))
     return tuple(found)
