@@ -299,16 +299,20 @@ def _pair(frequencies: Array, experiment: Identified, bases: list[tuple[list[int
         return {}, likeness
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
     fitting = (likeness >= _PAIRED) & (apart <= _FARTHEST)
-    first, second = scipy.optimize.linear_sum_assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
-    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
+    found = _assign(np.where(fitting, _FAR * apart - likeness, 0.0), fitting)
     return _sort_within_groups(found, [group for group, _ in bases]), likeness
+
+
+def _assign(cost: Array, fitting: Array) -> dict[int, int]:
+    """Column of each row for the least total cost; pairs that do not fit are left out."""
+    first, second = scipy.optimize.linear_sum_assignment(cost)
+    return {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
 
 
 def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> Array:
     """Measured size of every output relative to the model, modes paired by frequency, because scaled shapes are unsuitable."""
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
-    first, second = scipy.optimize.linear_sum_assignment(np.minimum(apart, _FARTHEST))
-    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if apart[i, j] <= _FARTHEST}
+    found = _assign(np.minimum(apart, _FARTHEST), apart <= _FARTHEST)
     whole = [group for group in groups if all(index in found for index in group)]
     theory = _sizes(own, whole)
     scales = np.ones(len(own))
