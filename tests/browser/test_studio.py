@@ -26,11 +26,16 @@ ServedStage = tuple[str, Path]
 Serve = Callable[[str], ServedStage]
 
 
+SEEN = """() => JSON.stringify([studio.state.value?.problems, studio.tab.value, ...["state", "figures", "verdicts", "reach"].map(
+  (each) => studio[each].value?.revision)])"""
+"""What the page shows, for the message of a failure."""
+
+
 def until(page: Page, expression: str, patience: float = PATIENCE) -> object:
     """What an expression comes to be, once it is something. The page's policy forbids strings that the browser would wait for."""
     end = time.monotonic() + patience
     while not (found := page.evaluate(f"() => ({expression})")):
-        assert time.monotonic() < end, f"not within {patience:g} s: {expression}"
+        assert time.monotonic() < end, f"not within {patience:g} s: {expression}; {page.evaluate(SEEN)}"
         page.wait_for_timeout(50)
     return found
 

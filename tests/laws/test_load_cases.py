@@ -41,7 +41,7 @@ def test_where_the_free_stage_gives_way_its_stiffness_against_the_drive_vanishes
 def test_a_locked_drive_bears_more_than_a_free_one_and_none_at_rest_is_as_asked_alone(model: Nonlinear) -> None:
     """A constraint more never takes stability; the case at rest is that of the weight alone, an imperfect bifurcation."""
     free, locked = (case_critical(model, each).factor for each in (AWAY, replace(AWAY, locked=("platform.x",))))
-    with pytest.raises(LowerBoundError, match="imperfect bifurcation, where the stage begins to move") as rest:
+    with pytest.raises(LowerBoundError, match="imperfect bifurcation, where motion per unit of load becomes") as rest:
         case_critical(model, LoadCase(WEIGHT, REST, {WEIGHT: 1.0}))
     assert locked > 2.0 * free
     assert rest.value.bound == pytest.approx(2.6, rel=0.01)

@@ -466,6 +466,16 @@ def test_matrix_market_files_that_are_wrong_are_refused(tmp_path, text, told):
     assert told in str(caught.value)
 
 
+def test_a_part_of_relative_files_has_absolute_paths(tmp_path, monkeypatch):
+    body = elastic(3)
+    given = written(body, tmp_path, "mtx")
+    damping = damping_of(body, 25)
+    scipy.io.mmwrite(tmp_path / "C.mtx", 0.5 * (damping + damping.T), symmetry="symmetric", precision=17)
+    monkeypatch.chdir(tmp_path)
+    made = superelement(replace(given, stiffness_file="K.mtx", mass_file="M.mtx", damping_file="C.mtx"))
+    assert made.files == tuple(str(tmp_path / name) for name in ("K.mtx", "M.mtx", "C.mtx"))
+
+
 def test_a_mass_matrix_of_another_size_is_refused_before_it_is_read(tmp_path):
     part = written(elastic(3), tmp_path, "mtx")
     (tmp_path / "M.mtx").write_text("%%MatrixMarket matrix coordinate real general\n100000000 100000000 1\n1 1 1.0\n")

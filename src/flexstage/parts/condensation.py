@@ -1,4 +1,4 @@
-"""Check and Craig-Bampton reduction of superelements to ports and fixed-interface modes."""
+"""Superelements: check of the matrices, and Craig-Bampton reduction to ports and fixed-interface modes."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from flexstage.spatial.frame import Frame, axes, mirror, twist_transform
 SYMMETRIC = 1e-6
 """Largest accepted asymmetry of an entry relative to the largest entry of the matrix."""
 RIGID = 1e-3
-"""Largest accepted stiffness of a rigid motion (rounding error of the file), relative to the softest elastic motion."""
+"""Largest accepted stiffness of a rigid motion due to rounding in the file, divided by the stiffness of the softest elastic motion."""
 STATED = 1e-3
-"""Largest accepted relative deviation of specified mass, centre (divided by the distance of the ports) and inertia from the matrices."""
+"""Largest accepted relative deviation of specified mass properties from the matrices (centre: divided by the distance of the ports)."""
 _NEGATIVE = 1e-8
 _NOTHING = 1e-10
 _MASSLESS = 1e-13
@@ -37,11 +37,11 @@ class Condensed:
     """Superelement reduced to p ports and m fixed-interface modes [SI].
 
     A port's twist is about the port's origin, in its axes; the ports are in the order of their rows in the file. `stiffness` (6 (p - 1), 6
-    (p - 1)) is the matrix of all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies of the
-    mass-normalised modes. `inertia` (6 p + m, 6 p + m) is the mass matrix of all ports and the modes. `damping` (6 (p - 1) + m, 6 (p - 1) +
-    m) is the damping matrix of the modes and all ports except the first (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3)
-    about the centre, in the part's axes, are computed from rigid motions. `error` is the ratio of the removed stiffness of rigid motions to
-    the stiffness of the softest elastic motion.
+    (p - 1)) is the stiffness matrix of all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies of
+    the mass-normalised modes. `inertia` (6 p + m, 6 p + m) is the mass matrix of all ports and the modes. `damping` (6 (p - 1) + m, 6 (p -
+    1) + m) is the damping matrix of the modes and all ports except the first (`None`: undamped). `mass`, the `centre` of mass (3,) and the
+    `moments` of inertia (3, 3) about the centre are in the part's axes and are computed from rigid motions. `error` is the ratio of the
+    removed stiffness of rigid motions to the stiffness of the softest elastic motion.
     """
 
     stiffness: Array
@@ -137,7 +137,7 @@ def _loss_findings(damping: Array, motion: Array) -> Iterator[Finding]:
     largest = float(np.max(np.abs(damping), initial=0.0))
     left = float(np.max(np.abs(damping[:, : len(motion)] @ motion)))
     if left > RIGID * largest * float(np.max(np.abs(motion))):
-        what = f"resists rigid motions, like mass-proportional damping (got {left:.3g}, largest entry {largest:.3g})"
+        what = f"resists rigid motions, like mass-proportional damping (got {left:.3g} for a rigid motion, largest entry {largest:.3g})"
         yield Finding("damping matrix", what, "Export only the damping of material and joints; specify other damping for the whole stage")
     elif float(np.linalg.eigvalsh(damping)[0]) < -_NEGATIVE * len(damping) * largest:
         yield Finding("damping matrix", "has a negative eigenvalue", "Export the damping of the unloaded part")
@@ -161,7 +161,7 @@ def _shape_findings(part: Superelement, matrices: Mapping[str, MatrixLike]) -> I
         port = part.ports[name]
         if port.row + 5 > len(rows):
             what = f"its six rows end at row {port.row + 5}, but the matrices have {len(rows)} rows"
-            yield Finding(f"ports.{name}.row", what, "Use the number of its first row, counted from 1")
+            yield Finding(f"ports.{name}.row", what, "Use the number of the port's first row, counted from 1")
             continue
         if np.any(rows[port.row - 1 : port.row + 5]):
             yield Finding(
@@ -179,7 +179,7 @@ def _entry_findings(name: str, matrix: MatrixLike) -> Iterator[Finding]:
     sparse = scipy.sparse.issparse(matrix)
     entries = matrix.data if sparse else matrix
     if not np.all(np.isfinite(entries)):
-        yield Finding(name, f"{int(np.sum(~np.isfinite(entries)))} of its entries are not finite", "Export it again")
+        yield Finding(name, f"{int(np.sum(~np.isfinite(entries)))} of its entries are not finite", "Export the matrix again")
         return
     largest = np.max(np.abs(entries), initial=0.0)
     off = abs(matrix - matrix.T)
@@ -187,7 +187,7 @@ def _entry_findings(name: str, matrix: MatrixLike) -> Iterator[Finding]:
     if off[row, column] > SYMMETRIC * largest:
         what = (
             f"not symmetric: entry ({row + 1}, {column + 1}) is {matrix[row, column]:.6g} and its transpose "
-            f"{matrix[column, row]:.6g}; they differ by {off[row, column] / largest:.2g} of the largest entry (at most {SYMMETRIC:g})"
+            f"{matrix[column, row]:.6g}; they differ by {off[row, column] / largest:.2g} of the largest entry (limit {SYMMETRIC:g})"
         )
         yield Finding(name, what, "Export the whole matrix, not only a triangle, of a model without rotors or contact")
 
@@ -270,7 +270,7 @@ def _rigid_findings(part: Superelement, at_ports: Array, in_file: Array, frames:
         return 0.0, [Finding("stiffness matrix", "no relative motion of the ports has stiffness", "Check the file")]
     if left > RIGID * softest:
         what = (
-            f"a rigid motion of all ports has a stiffness of {left:.3g} N/m (rotations times {_span(frames) * 1e3:.4g} mm), "
+            f"a rigid motion of all ports has a stiffness of {left:.3g} N/m (rotations multiplied by {_span(frames) * 1e3:.4g} mm), "
             f"{left / stiffest:.2g} times that of the stiffest elastic motion and "
             f"{left / softest:.2g} times that of the softest (expected at most {RIGID:g})"
         )
@@ -290,7 +290,7 @@ def _hint(part: Superelement, at_ports: Array, in_file: Array, frames: list[Fram
             far = "farther apart" if part.units is FileUnits.SI else "closer"
             return f'Use units = "{units.value}", or move the ports a thousand times {far}: rigid motions are then free'
     if _is_free(at_ports, [Frame(np.eye(3), frame.position) for frame in frames]):
-        return "Remove along and up: rigid motions are free if all ports have the axes of the part"
+        return "Remove the keys along and up: rigid motions are free if all ports have the axes of the part"
     for first, second in itertools.combinations(range(len(frames)), 2):
         swapped = list(frames)
         swapped[first], swapped[second] = frames[second], frames[first]
@@ -335,7 +335,7 @@ def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Ar
         stated = np.real(first_design(stack(part.centre), 1))
         off = float(np.linalg.norm(stated - centre))
         if off > STATED * span:
-            what = f"wrong centre of mass ({off * 1e3:.4g} mm from the centre of the matrices, ({_millimetres(centre)}) mm)"
+            what = f"wrong centre of mass ({off * 1e3:.4g} mm from that of the matrices, which is ({_millimetres(centre)}) mm)"
             yield Finding("centre", what, advice)
     if part.inertia is not None:
         stated = np.real(first_design(tensor(part.inertia), 2))
@@ -355,7 +355,7 @@ def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
     largest = np.max(np.abs(diagonal), initial=0.0)
     below = np.flatnonzero(diagonal < -_NEGATIVE * largest)
     if len(below):
-        what = f"{len(below)} of its diagonal entries are negative, the smallest {diagonal[below].min():.4g} in the file's units"
+        what = f"{len(below)} of its diagonal entries are negative, the smallest is {diagonal[below].min():.4g} in the file's units"
         yield Finding("mass matrix", what, "Export the mass matrix of the model, not a dynamic stiffness")
         return
     if scipy.sparse.issparse(inertia):
@@ -410,12 +410,17 @@ def _dense(matrix: MatrixLike) -> Array:
 
 @check_arguments
 def superelement(part: Superelement) -> Superelement:
-    """Return the part with absolute paths and the current digest of its files; raises `DesignError` like `condense`.
+    """Return the part with absolute paths and the current digest of its files. Raises `DesignError` in the same cases as `condense`.
 
-    Use this function for parts created in Python from new files. In a design file, the digest is specified.
+    Use this function for parts created in Python from new files. A part in a design file contains its digest already.
     """
     whole = replace(
-        part, **{key: str(Path(path).resolve()) for key in ("file", "stiffness_file", "mass_file") if (path := getattr(part, key))}
+        part,
+        **{
+            key: str(Path(path).resolve())
+            for key in ("file", "stiffness_file", "mass_file", "damping_file")
+            if (path := getattr(part, key))
+        },
     )
     versioned = replace(whole, sha256=digest_of(whole.files))
     condense(versioned)

@@ -52,7 +52,7 @@ class StrokeLimits:
         """All 2^n combinations of least and largest strokes (..., 2^n, n) [m]. Raises `DesignError` for more than 12 actuators."""
         count = len(self.actuators)
         if count > 12:
-            raise refuse("stroke corners", f"{count} actuators have {2**count} corners", "Use single strokes")
+            raise refuse("stroke corners", f"{count} actuators have {2**count} corners, which are too many", "Use single strokes")
         high = (np.arange(2**count)[:, None] >> np.arange(count)) & 1 == 1
         return np.where(high, self.high[..., None, :], self.low[..., None, :])
 
@@ -62,7 +62,7 @@ class StrokeLimits:
 
 
 class SingleAxis(Result):
-    """Strokes of the platform along one coordinate with the others fixed at zero, from `low` to `high` (..., f) [m, rad].
+    """Strokes of the platform along one coordinate with the other coordinates at zero, from `low` to `high` (..., f) [m, rad].
 
     `limiting` names the actuator or stop (`stops/end`) that determines each symmetric stroke of the first design.
     """
@@ -70,7 +70,7 @@ class SingleAxis(Result):
     TABLE: ClassVar[Layout] = Layout(
         "Single-axis strokes",
         "table limiting",
-        notes=("One coordinate at a time, the others at zero. Limited by: limit of the symmetric stroke.",),
+        notes=("Strokes along one coordinate, with the others at zero. Limited by: actuator or stop that limits the symmetric stroke.",),
     )
 
     coordinates: tuple[str, ...]
@@ -111,7 +111,8 @@ class Utilisation(Result):
     @property
     def ratio(self) -> Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used")]:
         """Demand divided by available stroke (..., n); above 1, the corner of the box is out of reach."""
-        return np.divide(self.demand, self.available, out=np.where(self.demand > 0.0, np.inf, 0.0), where=self.available > 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self.demand == 0.0, 0.0, self.demand / (self.available + 0.0))  # not -0
 
     @property
     def reachable(self) -> Annotated[Array, VIEW]:

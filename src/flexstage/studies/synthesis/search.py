@@ -41,7 +41,7 @@ _LARGE = 0.1
 
 @dataclass(frozen=True)
 class Relaxation:
-    """The best value [SI] of a required quantity if all other requirements are met; `required` is the text of the specification."""
+    """The best value [SI] of a required quantity if all other requirements are met; `required` is the requirement as text."""
 
     measure: str
     required: str
@@ -51,8 +51,9 @@ class Relaxation:
 
 @dataclass(frozen=True)
 class FailedPair:
-    """A pair without a design that meets all requirements: least relative `violation` of all together, and contradicting `requirements`.
+    """A pair without a design that meets all requirements.
 
+    `violation` is the smallest possible value of the largest relative violation. `requirements` are those that contradict each other.
     `relaxed` are the best values of single requirements if all others are met. If no pair has an answer, these values are computed for the
     pairs with the least violations. `corrected` are stricter limits of the lumped model, set because better models missed requirements.
     """
@@ -68,7 +69,7 @@ class FailedPair:
 
 @dataclass(frozen=True)
 class FrontPoint:
-    """A design of the front of two goals: both values [SI], the second in `unit`, and the varied named numbers [SI]."""
+    """A design of the front of two goals: the values of both goals [SI], the `unit` of the second goal, and the varied `numbers` [SI]."""
 
     goal: float
     second: float
@@ -78,20 +79,20 @@ class FrontPoint:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """A stage that meets all requirements: the text of its design file and study, its goal [SI] and the active requirements.
+    """A stage that meets all requirements: the text of its design file and study, its goal [SI] and the binding requirements.
 
-    `values` are the required quantities by the lumped model, `elastic` those with elastic bodies (flexibility estimated from outlines).
-    `displaced` are the worst values at the corners of the required displacements. `verified` are values by finite elements with estimated
-    relative `errors`, if requested; `unverified` is the reason for their absence. `rounds` is the number of searches until all models met
-    the requirements.
+    `values` are the required quantities by the lumped model. `elastic` are these quantities with elastic bodies (flexibility estimated from
+    outlines). `displaced` are the worst values at the corners of the required displacements. `verified` are values by finite elements with
+    estimated relative `errors`, if requested; `unverified` is the reason why these values are missing. `rounds` is the number of searches
+    until all models met the requirements.
 
     `manufactured` is the production yield by the lumped model, if requested: the fraction of stages that meet all requirements when their
     dimensions scatter. `crossover` is the lowest sensitivity crossover of the control loop with the default controller, if requested.
-    `front` are the Pareto-optimal designs, if there are two goals. `binding` are the active requirements and range ends with their
-    sensitivities, before dimensions are rounded.
+    `front` are the Pareto-optimal designs, if there are two goals. `binding` contains the binding requirements and ends of variables'
+    ranges with their sensitivities, before dimensions are rounded.
 
     `efficiency` is the fraction of the actuators' stroke energy that the stage uses (at most 1, see `bounds.efficiency`; `None` for coils).
-    `warnings` are those of `flexstage check`.
+    `warnings` are the warnings of `flexstage check`.
     """
 
     architecture: str
@@ -131,7 +132,7 @@ class Answer:
 
     @property
     def file(self) -> str:
-        """Name of the files, without ending."""
+        """Name of the answer's files, without ending."""
         sign = "".join(each if each.isalnum() else "-" for each in self.actuator.lower()).strip("-")
         return f"{self.architecture}-{sign}"
 
@@ -144,7 +145,7 @@ def search(
     answer: Answer | None = None,
     verify: Estimator | None = None,
 ) -> Answer | FailedPair:
-    """Optimise one pair, and repeat this with corrected limits as long as a better model misses a requirement.
+    """Optimise one pair, and repeat the optimisation with corrected limits as long as a better model misses a requirement.
 
     Better models include elastic bodies (with `verify`, finite elements) and large displacements. The search may continue from an earlier
     `answer`. For an architecture that cannot be drawn or analysed, the result is a failed pair with the reason.
@@ -172,7 +173,7 @@ def search(
         if not missed:
             return known if known.front or spec.second_goal is None else replace(known, front=front(spec, pair, limits, progress))
         limits, known = missed, None
-    return FailedPair(*names, None, {}, f"with {_models(verify)} {'; '.join(f'{key} must be {text}' for key, text in limits.items())}")
+    return FailedPair(*names, None, {}, f"with {_models(verify)}, {'; '.join(f'{key} must be {text}' for key, text in limits.items())}")
 
 
 def _models(verify: Estimator | None) -> str:
@@ -226,7 +227,7 @@ def relaxations(
             found = optimum(spec, pair, goal, {**failed.corrected, **dict.fromkeys(group)}, progress)
             if found.final is not None:
                 raised = requirement(stage, key, failed.corrected.get(key, line.text), key).limit
-                yield Relaxation(key, line.text, float(found.final.values[0]) * line.limit / raised, line.quantity.si)
+                yield Relaxation(key, line.text, float(found.final.values[0]) * (line.limit / raised if raised else 1.0), line.quantity.si)
 
 
 def optimum(
