@@ -1,8 +1,8 @@
-"""flexstage: design and proof of flexure-based ultra-precision positioning stages.
+"""flexstage: design and verification of flexure-based ultra-precision positioning stages.
 
-These names describe and analyse a stage; `solid`, `experiment`, `control` and `studies` contain the names for further tasks. A name is
-imported from its module at first use (PEP 562), so `import flexstage` itself loads nothing; type checkers and editors read the same names
-from `__init__.pyi`.
+The names of this package describe and analyse a stage; the packages `solid`, `experiment`, `control` and `studies` contain names for
+further tasks. A name is imported from its module at first use (PEP 562), so that `import flexstage` does not load these modules. Type
+checkers and editors read the same names from `__init__.pyi`.
 """
 
 from importlib import import_module

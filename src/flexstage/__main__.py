@@ -1,4 +1,4 @@
-"""`python -m flexstage`: the command line, where its script is not on the PATH."""
+"""`python -m flexstage`: the command line, if the script `flexstage` is not on the PATH."""
 
 from flexstage.apps.cli import main
 

@@ -167,7 +167,7 @@ BAD = {
     "needs the electromechanical coupling": ("parallelogram", LoopSetup(amplifier=ChargeSetup(corner=1.0))),
     "at least 0 and less than 1": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=1.0, corner=1.0))),
     "the stage has force actuators": ("voice-coil-stage", LoopSetup(amplifier=HELD)),
-    "the inverse applies to voltage drive": (
+    "the inverse model applies to voltage drive": (
         "parallelogram",
         LoopSetup(amplifier=HELD, hysteresis=HystereticStacks(width=0.1), compensate=(Compensation.HYSTERESIS,)),
     ),

@@ -148,7 +148,7 @@ def test_a_ball_on_a_flat_lifts_off_and_slips_by_its_forces():
     [
         (replace(coupling(), forces={"up": Force("platform", (0.0, 0.0, 0.0), (0.0, 0.0, 60.0))}), "the ball lifts off its seat"),
         (replace(coupling(friction=0.1), forces={"side": Force("platform", (0.0, 0.0, 0.0), (12.0, 0.0, 0.0))}), "the ball slips"),
-        (coupling(radius=1e-3), "times the onset of yield in the softer material"),
+        (coupling(radius=1e-3), "times the pressure at which the softer material yields"),
     ],
 )
 def test_balls_that_leave_their_seats_are_told(stage, what):

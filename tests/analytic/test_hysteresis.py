@@ -170,7 +170,7 @@ def test_the_width_is_told_relative_to_the_stroke_of_the_major_loop():
     whole = major_loop(found.model, found.range)
     assert found.stroke < 0.85 * whole.stroke[0]
     assert found.width == pytest.approx(whole.width[0], rel=0.01)
-    assert "the width to that of the major loop" in StackTest.TABLE.notes[0]
+    assert "the width by the major loop's stroke" in StackTest.TABLE.notes[0]
 
 
 def test_small_turns_are_noise():
@@ -258,8 +258,8 @@ def test_bad_step_records_are_refused_with_numbers():
         return str(error.value)
 
     assert "got 5 V throughout" in refused_creep(times, 0.0 * volts + 5.0, strokes)
-    assert "the voltage changes from 1.98 s to 198 s" in refused_creep(times, times, strokes)
-    assert "too short after the step (got 0.48 s" in refused_creep(*(each[:75] for each in (times, volts, strokes)))
+    assert "the voltage step lasts from 1.98 s to 198 s" in refused_creep(times, times, strokes)
+    assert "ends too soon after the step (got 0.48 s" in refused_creep(*(each[:75] for each in (times, volts, strokes)))
     assert "rms deviation from the logarithmic law" in refused_creep(times, volts, strokes + 1e-5 * np.sin(times))
     assert "a sample is not finite" in refused_creep(times, volts, np.where(times > 3.0, np.nan, strokes))
     assert "times must ascend" in refused_creep(times[::-1], volts[::-1], strokes)

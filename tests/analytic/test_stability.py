@@ -220,10 +220,10 @@ def test_a_load_factor_is_told_as_stiffness_and_frequency(factor: float, softer:
     """Of the stiffness 1/factor is gone, of the frequency 1 - (1 - 1/factor)^(1/2)."""
     found = replace(of(leaves(1.0)), dead=np.array(factor), worst=np.array(factor), stiffens=np.zeros(()))
     (told,) = found.warnings
-    assert f"is {softer} less stiff than the nominal one, and its frequency {slower} lower" in told.what
+    assert f"is {softer} less stiff than the nominal stage, and its frequency {slower} lower" in told.what
     assert not found.refusals
     (worse,) = replace(found, dead=np.array(100.0)).warnings
-    assert f"up to {softer} less stiff than printed, and a frequency up to {slower} lower" in worse.what
+    assert f"up to {softer} less stiff than the results show, and a frequency up to {slower} lower" in worse.what
     assert len(replace(found, worst=np.array(0.9 * factor)).warnings) == 2  # the strokes take a tenth of it more
 
 

@@ -189,7 +189,7 @@ BAD = {
     "must be above 1 (got 0.9)": TuningSpec(PI_FAMILY, 5.0, 0.9),
     "must be at least 0 and below 0.5 (got -0.1)": TuningSpec(PI_FAMILY, 5.0, 2.0, -0.1),
     "notch at 1200 Hz: no mode within 10 % (nearest: 875": TuningSpec(PI_FAMILY, 5.0, notches=(Notch(1200.0),)),
-    "notches: got 1 for LQG, whose observer models the modes": TuningSpec(LQG_FAMILY, 5.0, notches=(Notch(875.0),)),
+    "notches: LQG models the modes in its observer, without notches (got 1)": TuningSpec(LQG_FAMILY, 5.0, notches=(Notch(875.0),)),
     "the observer's noise is missing": TuningSpec(LQG_FAMILY, 5.0),
 }
 

@@ -231,7 +231,7 @@ def test_stacks_are_pulled_below_no_voltage():
     assert least[0] == pytest.approx(-largest[0], rel=1e-9)
     assert largest[0] == pytest.approx(0.5 * share.stroke.values[0, 0] * 20e-6, rel=1e-9)
     assert share.use(limits)[0] == pytest.approx(-least[0] / 0.001, rel=1e-9)
-    assert ["times its limits" in each.what for each in share.tension_findings(limits)] == [True]
+    assert ["times the limit in tension" in each.what for each in share.tension_findings(limits)] == [True]
     unknown = replace(even, tensile_limit=None)
     told = load_share(guide(unknown), lumped(guide(unknown))).tension_findings(limits)
     assert ["preload and tensile limit missing" in each.what for each in told] == [True]

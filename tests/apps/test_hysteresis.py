@@ -102,8 +102,8 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
     assert "y is in um (expected volts)" in exchanged
     assert "u is in V (expected a unit of length)" in exchanged
     assert "file not found" in ended_badly(recorded, "none.csv")
-    assert "no range (got 1000 V to 0 V" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
-    assert "step.uff: record: too short after the step" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")
+    assert "not a range (got 1000 V to 0 V" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
+    assert "step.uff: record: ends too soon after the step" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")
     assert "stack.csv is also an input of this command" in ended_badly(recorded, "stack.csv", "-o", "stack.csv")
 
 

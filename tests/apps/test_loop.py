@@ -306,7 +306,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--trajectory", "nowhere.csv"), ("nowhere.csv", "file not found")),
     (("--floor", "VC-Z"), ("--floor VC-Z", "VC-A")),
     (("--feedforward", "everything"), ("--feedforward everything", "lost-motion, load, reference, hysteresis")),
-    (("--feedforward", "hysteresis"), ("compensate", "the inverse needs a hysteresis")),
+    (("--feedforward", "hysteresis"), ("compensate", "the inverse model needs a hysteresis")),
     (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "file not found")),
     (("--hysteresis", "80 %"), ("--hysteresis", "at most 0.5")),
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),

@@ -184,7 +184,7 @@ def test_a_record_of_its_form_is_read(work, package):
     told = subprocess.run(run, cwd=work, env={**os.environ, "PYTHONPATH": str(package)}, capture_output=True, text=True, check=True)
     assert told.stdout == "100.0 u1 [[1.0, 2.0], [3.0, 4.0]]\n"
     told = subprocess.run(run, cwd=work, env=os.environ, capture_output=True, text=True, check=False)
-    assert "no time column in" in told.stderr
+    assert "no column contains times" in told.stderr
 
 
 def test_the_page_shows_what_the_package_offers():

@@ -102,7 +102,7 @@ def test_outputs_that_cannot_be_written_are_refused(
     ("arguments", "said"),
     [
         (("identify", "record.uff", "./record.uff"), "it is given 2 times"),
-        (("identify", "record.uff", "--array", "sample=u"), "--array sample=u: unknown meaning or no array (known: samples, time, rate"),
+        (("identify", "record.uff", "--array", "sample=u"), "--array sample=u: unknown meaning, or array missing (known: samples, time"),
         (("identify", "record.uff", "--array", "samples=u"), "samples=u: universal files have no named arrays"),
         (("identify", "record.uff", "--band", "100 Hz", "100.2 Hz"), "too few lines from 100 to 100.2 Hz"),
         (("identify", "record.uff", "--band", "100 Hz", "106 Hz"), "too few lines from 100 to 106 Hz"),

@@ -84,7 +84,7 @@ def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -
         (("--seconds", "0"), ("seconds", "0 s")),
         (("--seconds", "-3"), ("seconds", "-3 s")),
         (("--rate", "0 Hz"), ("rate", "0 Hz")),
-        (("--rate", "300 Hz"), ("300 Hz", "twice the highest platform mode, 176.7 Hz")),
+        (("--rate", "300 Hz"), ("300 Hz", "below twice the frequency of the highest platform mode, 176.7 Hz")),
         (("--rate", "300"), ("--rate", "unit missing")),
         (("--drive-rms", "50um"), ("B1", "6 x 50 um", "-75 um to 75 um")),
         (("--drive-rms", "1kg"), ("--drive-rms", "displacement", "voltage")),

@@ -207,7 +207,7 @@ def test_an_interruption_ends_with_the_code_of_its_signal_and_the_same_command_r
         process.send_signal(signal.SIGINT)
         _, said = process.communicate()
     assert process.returncode == 130
-    assert "\nInterrupted. Nothing was written. Finished finite-element results (cache), " in said
+    assert "\nInterrupted. Nothing was written. Finished results are kept for --resume: " in said
     assert sorted(path.name for path in tmp_path.iterdir()) == ["cache", "stage.toml", "temporary"]
     assert not list((tmp_path / "temporary").iterdir())
     kept = {path.name for path in (tmp_path / "cache").iterdir()}

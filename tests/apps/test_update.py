@@ -64,7 +64,7 @@ def test_tables_say_what_the_test_tells(recorded: Command) -> None:
         (("--parameters", "front.thickness", "-o", "u.toml"), "Write horizontal/front.thickness or vertical/front.thickness"),
         (("--parameters", "platform.mass", "-o", "u.toml"), "the body's mass follows from its solids"),
         (("--parameters", "steel.yield_stress", "-o", "u.toml"), "it has no effect on the compared frequencies"),
-        (("--parameters", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: no relative standard deviation (got 200 %"),
+        (("--parameters", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: not a valid relative standard deviation (got"),
         (("--parameters", "neck.thickness", "--model-error", "0.1", "--model-error", "two", "-o", "u.toml"), "--model-error"),
         (
             ("--parameters", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"),

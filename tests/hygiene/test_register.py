@@ -28,10 +28,10 @@ def test_what_one_package_offers_is_known_by_name_and_version(offers):
 
 @pytest.mark.parametrize(("kind", "who"), [("both", "one 1.5"), ("both", "other 1.5"), ("own", "flexstage")])
 def test_a_kind_that_is_offered_twice_is_refused_with_who_does(offers, kind, who):
-    with pytest.raises(DesignError, match=f"{kind}: several packages provide it: .*{who}"):
+    with pytest.raises(DesignError, match=f"{kind}: several packages provide this kind: .*{who}"):
         offers.get(kind)
 
 
 def test_an_offer_that_does_not_load_is_told_with_its_package(offers):
-    with pytest.raises(DesignError, match=r"one 1\.5 provides it, but it cannot be loaded: ModuleNotFoundError"):
+    with pytest.raises(DesignError, match=r"one 1\.5 provides this kind, but the kind cannot be loaded: ModuleNotFoundError"):
         offers.get("bad one")

@@ -255,7 +255,7 @@ def test_amplifiers_without_lag_count_over_the_band():
 
 def test_unstable_loops_and_wrong_floors_are_refused():
     closed = next(found for seed in range(50) if (found := random_loop(seed)).system.growth > 1.0)
-    with pytest.raises(DesignError, match=r"rms values of an unstable loop: .* grows at"):
+    with pytest.raises(DesignError, match=r"no rms values for an unstable loop: .* grows at"):
         noise_budget(closed, {}, (1.0, 100.0))
     with pytest.raises(DesignError, match=r"ground\.q: unknown motion of the ground"):
         noise_budget(_filtered(5e3), {"ground.q": Spectrum(1e-18)}, (1.0, 100.0))
@@ -267,7 +267,7 @@ def test_what_is_not_stated_is_said():
     closed = _filtered(5e3)
     bare = replace(closed.plant.hardware, sensors=Table({"S": replace(closed.plant.hardware.sensors["S"], noise_density=None)}))
     found = noise_budget(replace(closed, plant=replace(closed.plant, hardware=bare)), {}, (1.0, 100.0))
-    assert any(note.startswith("no specified noise for S") for note in found.notes)
+    assert any(note.startswith("the noise of S is not specified") for note in found.notes)
     assert not any("half a step" in note for note in found.notes)  # the amplifier's noise moves the reading
     silent = replace(bare, amplifiers=Table({}))
     still = noise_budget(replace(closed, plant=replace(closed.plant, hardware=silent)), {}, (1.0, 100.0))

@@ -244,5 +244,5 @@ def test_unstable_loops_have_no_margins():
     ):
         with pytest.raises(DesignError, match=r"unstable loop: a pole at .* Hz.* grows at .* 1/s, mainly due to "):
             ask(closed)
-    with pytest.raises(DesignError, match="rms values of an unstable loop"):
+    with pytest.raises(DesignError, match="no rms values for an unstable loop"):
         require_stable(closed, "rms values")

@@ -190,7 +190,7 @@ def test_stages_that_carry_one_another_are_told(tmp_path):
     path = written(tmp_path)
     fine = (tmp_path / "fine.toml").read_text()
     (tmp_path / "fine.toml").write_text(f'{fine}\n[stages]\nagain = {{ file = "top.toml", on = "platform" }}\n')
-    with pytest.raises(DesignError, match=r"circular reference of this file and .*top\.toml"):
+    with pytest.raises(DesignError, match=r"circular reference between this file and .*top\.toml"):
         load(path)
     (tmp_path / "fine.toml").write_text(fine.replace("thickness", "thicknes", 1))
     with pytest.raises(DesignError, match=r":5: stages\.fine\.file: fine\.toml:\d+: parts\.leaf\.thicknes: unknown key"):
@@ -253,8 +253,8 @@ def test_grounds_of_mounted_stages_agree_or_are_stated(tmp_path):
 
     with pytest.raises(DesignError) as caught:
         read()
-    assert 'different ground materials (got "t/aluminium" in the mounted stage, "s/steel" in this one)' in str(caught.value)
-    assert "different ground temperatures (got 3 K in the mounted stage, 2 K in this one)" in str(caught.value)
+    assert 'different ground materials (got "t/aluminium" in the mounted stage, "s/steel" in this stage)' in str(caught.value)
+    assert "different ground temperatures (got 3 K in the mounted stage, 2 K in this stage)" in str(caught.value)
     stated = read('ground = "s/steel"\ntemperatures.ground = "3 K"')
     assert stated.ground == "s/steel"
     bodies = {"s/platform": 2.0, "s/B/base": 2.0, "s/B/tip": 2.0}

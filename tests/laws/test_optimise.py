@@ -315,7 +315,7 @@ def test_steps_that_leave_no_design_are_said_to(tmp_path):
     study, wanted = study_of(tmp_path, POST, post_variables(', step = "0.5 mm"') + limits + '[optimise]\nmaximise = "f1"\nstarts = 1')
     found = optimise(study, wanted)
     assert found.rounded.point is None
-    assert "none of the 4 nearest designs on the steps of the variables is feasible; use finer steps" in found.rounded.reason
+    assert "none of the 4 nearest designs at multiples of the steps is feasible; use finer steps" in found.rounded.reason
     assert found.final is found.point
 
 

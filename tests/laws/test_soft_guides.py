@@ -224,7 +224,7 @@ def test_a_search_that_finds_nothing_better_returns_what_it_began_from(monkeypat
     )
     found = find(one, loops, TuningSpec(PID_FAMILY, objective=TuningObjective.REJECTION))
     assert found.controller.laws == plain.controller.laws
-    assert "no better one was found" in found.reason
+    assert "no better controller was found" in found.reason
 
 
 @pytest.mark.parametrize("late", [1.0, 0.4])

@@ -362,7 +362,7 @@ def test_the_force_in_the_reason_of_a_bound_is_that_of_each_coil(tmp_path: Path)
     spec = loads_specification(text, where=str(tmp_path / "spec.toml"))
     pair = CandidatePair(architectures()["travel"], catalogue_actuators(spec)["voice_coil"][0])
     reasons = {each.reason for each in shortfalls(spec, pair) if each.requirement == "frequency"}
-    assert reasons == {"2 coils have a continuous force of only 80 N each, even with the best lever"}
+    assert reasons == {"the continuous force of 2 coils, 80 N each, is too small even with the best lever"}
 
 
 def test_the_energy_of_an_amplified_actuator_is_that_of_its_blocked_deformation(tmp_path: Path) -> None:
@@ -386,13 +386,13 @@ def test_motions_of_one_axis_are_turned(tmp_path: Path) -> None:
 
 BAD = {
     "motion = {": ("motions = {", "motion"),
-    'x = "50 um", y = "50 um"': ("", "no displacement is required"),
+    'x = "50 um", y = "50 um"': ("", "required displacement missing"),
     'x = "50 um"': ('x = "-50 um"', "motion.x"),
     'x = "50 um", ': ('x = "200 mm", ', "the displacement exceeds the box"),
     '"30 g"': ('"30 mm"', "must be a mass"),
     '"5 mm"]': ('"50 mm"]', "the payload is wider than the box along z"),
     "at least 500 Hz": ("at least 500 mm", "must be a frequency"),
-    'requirements.frequency = "at least 500 Hz"': ("", "no frequency or stiffness is required"),
+    'requirements.frequency = "at least 500 Hz"': ("", "required frequency or stiffness missing"),
     '"PSt 1000/10/150 VS18"': ('"PSt 1000/10/155"', 'unknown actuator "PSt 1000/10/155"'),
     'requirements.frequency = "at least': (
         'requirements.safety = "at most 3"\nrequirements.frequency = "at least',
@@ -406,7 +406,7 @@ BAD = {
     ),
     'requirements.frequency = "': (
         'requirements.stroke.x = "at least 1 um"\nrequirements.frequency = "',
-        "strokes must be specified in motion",
+        "strokes belong in the section motion",
     ),
     'actuators.like = "': ('goals.maximise = "width"\nactuators.like = "', 'goals.maximise: unknown measure "width"'),
     "requirements.f": (

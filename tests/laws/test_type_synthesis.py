@@ -223,7 +223,7 @@ def test_an_answer_of_a_synthesised_guide_keeps_its_requirements(motions: str) -
 
 REFUSED = {
     "unknown": ("x rx", "", ("guides",), 'unknown architecture "guides"'),
-    "other": ("x rx", "", ("guide",), "no architecture of these has exactly the motions x, rx. Use another --architecture."),
+    "other": ("x rx", "", ("guide",), "no architecture of those specified has exactly the motions x, rx. Use another --architecture."),
     "opening": ("x rx", 'box.opening = ["9 mm", "9 mm"]\n', (), "box.opening: the guide for the motions x, rx has no opening"),
     "kinds": ("x rx", 'actuators.kinds = ["amplified"]\n', (), 'Allow actuators of kind "piezo" or "voice_coil", or'),
 }

@@ -223,7 +223,7 @@ def test_a_warning_names_all_bodies_of_equal_effect() -> None:
 def test_a_warning_does_not_attribute_the_effect_of_all_bodies_to_one() -> None:
     """In the xy stage, the platform alone lowers frequency 3 by 4 %, all bodies by 7 %."""
     (told,) = (each.what for each in caveats(case("xy-stage")).warnings if each.where == "platform" and "rigid" in each.what)
-    assert told == "modelled as rigid, but flexible bodies change frequency 3 by -7 %; the effect is largest here"
+    assert told == "modelled as rigid, but flexible bodies change frequency 3 by -7 %; the effect of this body is the largest"
 
 
 LOSSES = {

@@ -154,7 +154,7 @@ def test_the_probability_of_a_resonance_that_is_not_driven_is_that_of_its_correl
     assert (found.doubt, found.chance) == (PeakCause.UNDRIVEN, 0.4)
     table = result_table((found,))
     assert table is not None
-    assert "if not driven, that inputs explain as much motion by chance" in table.notes[0]
+    assert "Not driven: probability that inputs explain as much motion by chance" in table.notes[0]
 
 
 @pytest.mark.full

@@ -110,7 +110,7 @@ def test_what_moved_the_stage_is_never_guessed() -> None:
     with pytest.raises(DesignError, match="or specify the excitation"):
         usable_measurement([made])
     driven = Record((Channel("u", "um", Role.INPUT), *made.channels[1:]), made.rate, made.samples)
-    with pytest.raises(DesignError, match="inputs in a record of unrecorded excitation: u"):
+    with pytest.raises(DesignError, match="the excitation is unrecorded, but the record has inputs: u"):
         usable_measurement([driven], requirements=RecordRequirements(unrecorded=True))
     with pytest.raises(DesignError, match=r"wrong number of records \(got 2, expected 1\)"):
         identification((made, made), FLOOR)

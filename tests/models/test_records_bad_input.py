@@ -296,7 +296,7 @@ def test_frequencies_have_their_stated_unit(unit: str, highest: float | None, tm
 def test_times_and_rate_that_disagree_are_told(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     scipy.io.savemat(path, {"time": np.arange(400) / RATE, "rate": 128.0, "samples": VALUES[:, 0]})
-    assert "contradictory rates: 100 Hz in its times, 128 Hz in the file" in refusal(path)
+    assert "contradictory rates: 100 Hz from the times, 128 Hz stated in the file" in refusal(path)
 
 
 def test_arrays_of_different_lengths_are_told(tmp_path: Path) -> None:
@@ -388,7 +388,7 @@ def test_a_table_without_header_or_time_is_refused(tmp_path: Path) -> None:
     np.savetxt(path, VALUES, delimiter=",")
     assert "2 columns have no header" in refusal(path)
     np.savetxt(path, VALUES, delimiter=",", header="u1 [V],S1 [um]", comments="")
-    assert "no time column in" in refusal(path)
+    assert "no column contains times" in refusal(path)
     np.testing.assert_array_equal(kept(path, Options(rate=50.0)), VALUES)
 
 
@@ -597,7 +597,7 @@ def test_bad_gcs_arrays_are_told(tmp_path: Path) -> None:
         ("NDATA = 3", "NDATA = 2"): "too many lines of numbers (got 3, expected 2 from its header)",
         ("DIM = 2", "DIM = two"): 'DIM: wrong value in the header (got "two"',
         ("DIM = 2", "DIM = 1"): "its header has NAME1, but its DIM is 1",
-        ("# SAMPLE_TIME = 0.000200", "#"): "SAMPLE_TIME: no time between lines in the header (missing)",
+        ("# SAMPLE_TIME = 0.000200", "#"): "SAMPLE_TIME: the header has no valid time step (missing)",
         ("SEPARATOR = 32", "SEPARATOR = 7"): "unknown separator code",
     }.items():
         assert told in refusal(gcs(path, change=change)), change

@@ -227,7 +227,7 @@ def test_too_short_and_too_slow() -> None:
     assert examine(whole, RecordRequirements(resolution=2.0, averages=8, highest=1023.0)).findings == ()
     short, slow = (fault for fault in examine(whole, RecordRequirements(resolution=1.9, averages=8, highest=1024.0)).faults)
     assert "too few averages at a resolution of 1.9 Hz (got 7.6 in 4 s, expected 8)" in short.finding.what
-    assert "sampled at 2048 Hz, at most twice the highest mode at 1024 Hz" in slow.finding.what
+    assert "sampled at 2048 Hz, not above twice the frequency of the highest mode, 1024 Hz" in slow.finding.what
     assert "2621 Hz or more" in slow.finding.advice
 
 

@@ -64,7 +64,7 @@ def test_a_head_that_is_not_ascii() -> None:
 
 
 def test_spectra_without_phase_are_refused() -> None:
-    with pytest.raises(DesignError, match=r"only 1 x power spectral density"):
+    with pytest.raises(DesignError, match=r"contains only 1 x power spectral density"):
         read(FOLDER / "sample_dataset58_psd.uff")
 
 

@@ -35,7 +35,7 @@ def told(setup: RigSetup, stage: fs.Mechanism = STAGE) -> str:
         (replace(SOUND, seconds=1e15), ("seconds", "samples")),
         (replace(SOUND, rate=0.0), ("rate", "0 Hz")),
         (replace(SOUND, rate=-5.0), ("rate", "-5 Hz")),
-        (replace(SOUND, rate=300.0), ("rate", "300 Hz is below twice the highest platform mode, 176.7 Hz", "353.4 Hz")),
+        (replace(SOUND, rate=300.0), ("rate", "300 Hz is below twice the frequency of the highest platform mode, 176.7 Hz", "353.4 Hz")),
         (replace(SOUND, seed=-1), ("seed", "-1")),
         (replace(SOUND, drive=NoiseDrive(stroke=20e-6, actuators=("B2",))), ("B2", "6 x 20 um", "-75 um to 75 um", "12.5 um rms")),
         (replace(SOUND, drive=NoiseDrive(stroke=0.0)), ("drive.stroke", "0 um")),

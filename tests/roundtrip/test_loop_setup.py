@@ -154,7 +154,7 @@ def test_numbers_out_of_bounds_are_found() -> None:
         ('[controller]\nloops = [{ axes = ["x"], derivative = "3 ms" }]', "kind pi has no derivative gain"),
         ('[controller]\nkind = "pid"\nloops = [{ axes = ["x"], derivative = "3 ms" }]', "the derivative needs a low-pass filter"),
         ('[controller]\nprefilter = { frequency = "90 Hz" }', "a prefilter needs specified gains"),
-        ('compensate = ["hysteresis"]', "the inverse needs a hysteresis"),
+        ('compensate = ["hysteresis"]', "the inverse model needs a hysteresis"),
         ('compensate = ["load", "load"]', "occurs 2 times"),
         ('[trajectory]\nkind = "raster"\nfast = "y"', "both axes are y"),
         ('[trajectory]\nkind = "spiral"\nfirst = "y"', "both axes are y"),

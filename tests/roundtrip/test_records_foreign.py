@@ -279,11 +279,11 @@ def test_arrays_of_unknown_meaning_are_listed_with_the_option_that_names_them(tm
     )
     with pytest.raises(DesignError, match=told):
         read(path)
-    with pytest.raises(DesignError, match=r"no times and no rate.*dt = 0.000488281.*\"step=...\""):
+    with pytest.raises(DesignError, match=r"times and rate are missing.*dt = 0.000488281.*\"step=...\""):
         read(path, of(samples="u"))
     with pytest.raises(DesignError, match=r"step=dz: unknown array"):
         read(path, of(samples="u", step="dz"))
-    with pytest.raises(DesignError, match=r"no frequencies"):
+    with pytest.raises(DesignError, match=r"frequencies are missing"):
         read(path, of(responses="H"))
 
 
@@ -390,7 +390,7 @@ def test_decimal_commas_units_below_and_latin_1(tmp_path: Path) -> None:
     rows = [";".join(f"{value:.17e}".replace(".", ",") for value in line) for line in TABLE]
     head = ["Messung vom 3. März", "Zeit;u1;u2;y1;y2;y3", "s;V;V;µm;µm;µm"]
     path.write_bytes("\r\n".join([*head, *rows, ""]).encode("latin-1"))
-    with pytest.raises(DesignError, match=r"no time column in: Zeit, u1.*array \"time=...\""):
+    with pytest.raises(DesignError, match=r"no column contains times \(columns: Zeit, u1.*array \"time=...\""):
         read(path)
     found = record(path, of(time="Zeit"))
     same(found)

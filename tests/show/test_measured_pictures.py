@@ -105,7 +105,7 @@ def test_a_pole_is_compared_with_the_last_one_found_even_if_orders_between_have_
     found = [Poles(order, np.array([-0.1 + 10j])[: order != 2], np.ones((int(order != 2), 1))) for order in (1, 2, 3)]
     diagram, _ = stabilisation(tuple(found), 0.1)
     assert diagram.stable.tolist() == [0, 3]
-    assert "one of a lower order" in str(stabilisation_section(identify(one_mode_record(seconds=16.0))))
+    assert "a pole of a lower order" in str(stabilisation_section(identify(one_mode_record(seconds=16.0))))
 
 
 def test_every_mode_stands_in_the_stabilisation_diagram(seen: Identification) -> None:

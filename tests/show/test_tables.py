@@ -408,7 +408,7 @@ def test_the_used_share_of_compression_is_said_to_include_the_preload():
     bearing = analysed("parallelogram", Model.LUMPED).workspace.bearing
     stack = case("parallelogram").parts["stack"]
     assert bearing.usage == pytest.approx((bearing.max_force + stack.preload) / stack.maximum_load)
-    assert "The used share in compression includes the preload." in " ".join(result_table(bearing).notes)
+    assert "the share used in compression includes it." in " ".join(result_table(bearing).notes)
 
 
 def test_a_single_axis_stroke_is_within_reach():

@@ -112,7 +112,7 @@ def _counts(rows: tuple[Row, ...]) -> tuple[str, ...]:
 
 def _made_by() -> str:
     packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
-    return f"Computed at commit {commit()} with Python {platform.python_version()}, {packages}."
+    return f"Computed at commit {commit()}, with Python {platform.python_version()}, {packages}."
 
 
 def commit() -> str:
@@ -122,27 +122,27 @@ def commit() -> str:
     if head.returncode:
         return "unknown (no repository)"
     changed = subprocess.run([*where, "status", "--porcelain", "--", "src", "tests", "tools"], capture_output=True, text=True, check=False)
-    return f"`{head.stdout.strip()}`{' and changes that are not committed' if changed.stdout.strip() else ''}"
+    return f"`{head.stdout.strip()}`{' plus uncommitted changes' if changed.stdout.strip() else ''}"
 
 
 _INTRODUCTION = """\
-This page compares results of flexstage with published and independent results. No model is fitted, and `make validation` or
-`make check-all` computes every value again.
+This page compares results of flexstage with published and independent results. No model is fitted to the reference values. The commands
+`make validation` and `make check-all` compute our values again.
 
-Only reference values are entered by hand, each with its source. The tolerance of a row is the tolerance of its source. If the source has
-no tolerance, our value must round to the printed digits. For hinges, the error of beam theory is known, and the error of our value
-must equal *this error*."""
+Only reference values are entered by hand, each with its source. The tolerance of a row is the tolerance of its source. If the source has no
+tolerance, our value must round to the printed digits. For hinges, the error of beam theory is known from closed forms, and the error of our
+value must equal this known error."""
 
 _SCORES = """\
 The table compares published results of stages that were built or computed. Sources, tolerances and the commands that repeat a row are on
 the page [published stages](validation/published.md); the [gallery](gallery.md) shows the cases."""
 
 _APART = """\
-The page [disagreements](disagreements.md) explains every recorded disagreement. `make validation` fails if an unrecorded row disagrees, or
-if a recorded row agrees."""
+The page [disagreements](disagreements.md) explains every recorded disagreement. `make validation` fails if a row disagrees without a
+recorded disagreement, or if a row with a recorded disagreement agrees."""
 
 _ABSENT = """\
-* Shin & Moon do not publish the mappings R_a and R_s, masses, radii, damping, and the values of its figures 11 and 12.
+* Shin & Moon do not publish the mappings R_a and R_s, masses, radii, damping, and the values that figures 11 and 12 of their paper show.
 * `tests/analytic/test_loaded_vibrations.py` and `tests/laws/test_nonlinear.py` check further results at large displacements: vibrations of
   loaded beams, and invariants of any stage.
 * `tests/models` checks the three-dimensional finite elements of other stages."""

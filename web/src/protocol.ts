@@ -3,9 +3,9 @@
 /**
  * All messages between the studio's page and its server, one class each; `python -m tools.protocol` writes them for TypeScript.
  *
- * A message is a JSON object whose `kind` is the class's name in small letters. The page sends requests, each with a unique `id`; the
- * answer contains it as `to`. Every request is answered: by `Done` if it has no result, and by `Refusal` if it is refused. Answers have the
- * sequence of the requests, except for `Drag` and `Pose`: there only the newest request gets a result, and older ones get `Done`. All other
+ * A message is a JSON object whose `kind` is the class's name in small letters. The page sends requests, each with a unique `id`; the answer
+ * contains this `id` as `to`. Every request is answered: by `Done` if it has no result, and by `Refusal` if it is refused. Answers have the
+ * sequence of the requests. Exceptions are `Drag` and `Pose`: only the newest request gets a result, and older requests get `Done`. All other
  * messages are pushed to all pages when their contents change. Numbers are in SI units, null if unknown.
  */
 export const VERSION = 6;
@@ -80,8 +80,8 @@ export interface Floats {
 /**
  * A mode: the platform's `twist` (x y z rx ry rz, m and rad) in the mass-normalised shape, and its `share` of the kinetic energy.
  *
- * `kinetic` contains the energy fractions of bodies, `strain` those of links, if at least one per cent, the largest first. A `local` mode
- * moves mainly bodies other than the platform.
+ * `kinetic` contains the fractions of kinetic energy in bodies, `strain` contains the fractions of strain energy in links. The largest
+ * fractions are first; fractions below one per cent are left out. A `local` mode moves mainly bodies other than the platform.
  */
 export interface ModeShape {
   number: number;
@@ -96,10 +96,11 @@ export interface ModeShape {
 }
 
 /**
- * A platform mode by finite elements: `error` is the estimated relative error of its frequency, `motion` the data for a viewer.
+ * A platform mode by finite elements: `error` is the estimated relative error of its frequency, `motion` contains data for a viewer.
  *
  * `theory` is the number of the paired mode of the lumped model; null without a pair. `theory_frequency` [Hz] is the frequency of the
- * lumped mode, `difference` its relative difference from finite elements, and `assurance` the modal assurance criterion of the pair.
+ * lumped mode, `difference` is the relative difference of this frequency from finite elements, and `assurance` is the modal assurance
+ * criterion of the pair.
  */
 export interface SolidMode {
   number: number;
@@ -130,7 +131,7 @@ export interface Loss {
   budget: Record<string, number>;
 }
 
-/** A requirement: its key and text, its limit and value in `si`, its margin (0.1: 10 %), and the `reason` if the value is unknown. */
+/** A requirement: its key and text, its limit and value in `si`, its margin (0.1 is 10 %), and the `reason` if the value is unknown. */
 export interface Judgement {
   key: string;
   text: string;
@@ -175,8 +176,8 @@ export interface Clash {
 /**
  * A motion of the platform as a screw: its twist, and its axis in a unit `direction` through `point`.
  *
- * `pitch` [m/rad] is null for a pure translation. `links` deform in a free motion; in a locked motion, they are the links that constrain
- * it, the one with the most strain energy first.
+ * `pitch` [m/rad] is null for a pure translation. `links` of a free motion are the links that deform. `links` of a locked motion are the
+ * links that constrain it, in descending order of strain energy.
  */
 export interface Screw {
   name: string;
@@ -196,7 +197,7 @@ export interface Snippet {
   fields: Record<string, string>;
 }
 
-/** A pair of architecture and actuator in a design job: `goal`, or `reason` for its failure, and `file` name (may be empty). */
+/** A pair of architecture and actuator in a design job: its `goal` or the `reason` for its failure, and its `file` name (or empty). */
 export interface PairRow {
   architecture: string;
   actuator: string;
@@ -215,8 +216,8 @@ export interface ResultTable {
 /**
  * A job: its state, the completed `fraction`, the estimated time `left` [s], the last output lines `said`, and its results.
  *
- * `report` is the address of its report, null without one. A job of `design` also has the finished `pairs` and, when it has ended, the
- * `tables` of the command.
+ * `report` is the address of its report, null without a report. A job of the command `design` also has the finished `pairs` and, when it
+ * has ended, the `tables` of the command.
  */
 export interface JobState {
   job: number;
@@ -403,7 +404,7 @@ export interface Redo {
 /**
  * Write the text to its file, or to another `file` of its folder.
  *
- * Refused if the file has changed on disk or the other file exists, unless `over` allows overwriting.
+ * The request is refused if the file has changed on disk, or if the other file exists, unless `over` allows overwriting.
  */
 export interface Save {
   kind: "save";
@@ -462,7 +463,7 @@ export interface Insert {
 }
 
 /**
- * Report the panes that a page shows. Only shown panes are computed after a change, other panes when they are shown.
+ * Report the panes that a page shows. After a change, only shown panes are computed. Other panes are computed when they are shown.
  *
  * The pane `stage` is the picture, `motions` contains its motions, and `reach` contains strokes and strength.
  */
@@ -636,8 +637,8 @@ export interface Warnings {
 /**
  * A link: its part, its lines in the text, its 6x6 matrices about the part's centre in the link frame, its stress and lost motion.
  *
- * `stress` [Pa] is the peak over all strokes, `limit` the allowable stress. `shares` contains the link's contribution to the lost motion
- * of each actuator. `facts` are further properties as text. `problems` are warnings about the part, such as dimensions outside the
+ * `stress` [Pa] is the peak over all strokes, `limit` is the allowable stress. `shares` contains the link's contribution to the lost
+ * motion of each actuator. `facts` are further properties as text. `problems` are warnings about the part, such as dimensions outside the
  * validated range of beam theory. `verified` compares the link with stored results of finite elements.
  */
 export interface Card {
@@ -673,7 +674,7 @@ export interface Place {
 }
 
 /**
- * Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` the actuator inputs per unit twist.
+ * Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` are the actuator inputs per unit twist.
  *
  * `gauges` contains the readings per unit input; `ideal` is the platform twist per unit input of the ideal stage. `stress` (links x
  * inputs) is in Pa per unit input; `rest` is the stress without strokes. The stress of a link is at most `rest` plus the sum of the

@@ -1,4 +1,4 @@
-"""Collection of results, with the reasons for those that fail."""
+"""Collection of results, with the reason for each result that fails."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ _Result = TypeVar("_Result")
 
 
 class Attempts:
-    """Collector of results: it stores the reason for each result that fails, by name. Results in `left_out` are `None` without a reason.
+    """Collector of results, which stores the reason for each failed result under the name of the result.
+
+    A result that `left_out` names is `None`, without a reason.
 
     >>> from flexstage.base.finding import refuse
     >>> attempts = Attempts()

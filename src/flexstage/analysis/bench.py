@@ -48,7 +48,7 @@ else:
 
 
 KEPT = 48
-"""Number of cached benches of single designs of a batch; each uses about a megabyte."""
+"""Largest number of cached benches, each of a single design of a batch; a bench uses about a megabyte."""
 _TOGETHER = 3
 """Largest number of required strokes for which all corners of their box are computed; with more, only both ends of each stroke."""
 
@@ -89,7 +89,10 @@ class StageResults:
             bench._points[name, at] = each  # noqa: SLF001
 
     def one(self, place: int, share: float) -> StageResults:
-        """Results of one design of a batch. Numbers become real part plus `share` times imaginary part. Recent results are cached."""
+        """Return the results of one design of a batch. Recent results are cached.
+
+        Each complex number of the design is replaced by its real part plus `share` times its imaginary part.
+        """
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()
@@ -97,7 +100,7 @@ class StageResults:
         return self._ones[place, share]
 
     def over(self, name: str) -> StageResults:
-        """Results of the stage linearised about all points of a path, as a batch."""
+        """Return the results of the stage linearised about every point of a path; each point is one design of a batch."""
         if name not in self._along:
             result = course(self.mechanism, name)
             states = result.path(self.nonlinear, result.rest(self.nonlinear)).state
@@ -125,7 +128,10 @@ class StageResults:
         return self._corrections[point]
 
     def stopped(self, point: str) -> tuple[Matrix, StrokeLimits]:
-        """Strokes and motions at stops per unit motion of a point, with lost motion corrected, and their limits (see `with_stops`)."""
+        """Return the actuator strokes and the motions at stops per unit motion of a point, and the limits of both (see `with_stops`).
+
+        Lost motion is corrected.
+        """
         return with_stops(self.mechanism, self.kinematics, self.correction(point), self.limits, point)
 
     @cached_property
@@ -185,7 +191,7 @@ class StageResults:
 
     @cached_property
     def limits(self) -> StrokeLimits:
-        """Stroke limits of the actuators around their bias."""
+        """Stroke limits of the actuators, relative to their bias."""
         return stroke_limits(self.mechanism)
 
     @cached_property
@@ -222,7 +228,10 @@ class StageResults:
         return self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
 
     def corners(self) -> tuple[tuple[str, ...], Array]:
-        """Axes and corners (c, k) of the box of required strokes; for more than three axes, only both ends of each stroke."""
+        """Return the k axes and the c corners (c, k) of the box of required strokes.
+
+        For more than three axes, the corners are replaced by the two ends of each single stroke.
+        """
         box = self._driven_box()
         half = np.array(list(box.values()))
         alone = np.concatenate([np.diag(half), -np.diag(half)])
@@ -281,7 +290,7 @@ class StageResults:
             return np.zeros(3)
         body, position = self.assembly.points[point]
         if body != PLATFORM:
-            raise refuse(point, f"a point of {body}, not of the platform", "Use a point of the platform")
+            raise refuse(point, f"this point belongs to {body}, not to the platform", "Use a point of the platform")
         return position - self.assembly.bodies[PLATFORM].reference
 
     def box(self) -> Mapping[str, float]:

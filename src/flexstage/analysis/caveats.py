@@ -50,7 +50,7 @@ from flexstage.parts.plausible import implausible
 
 @dataclass(frozen=True)
 class Default(Finding):
-    """Default value of an unspecified field. `without` are the kinds of results that do not depend on the field."""
+    """Default value of an unspecified field. `without` contains the kinds of results that do not depend on the field."""
 
     without: Annotated[frozenset[str], INNER] = frozenset()
 
@@ -71,13 +71,13 @@ class Caveats:
     defaults: tuple[Default, ...] = ()
 
     def defaults_of(self, kind: str) -> tuple[Default, ...]:
-        """Return the defaults on which a kind of result (`modes`, `workspace`) depends."""
+        """Return the defaults on which a kind of result (e.g. `modes` or `workspace`) depends."""
         return tuple(each for each in self.defaults if kind not in each.without)
 
 
 @SESSION.keep(8)
 def caveats(mechanism: Mechanism) -> Caveats:
-    """Return warnings and defaults of a description; results of the last descriptions are cached.
+    """Return warnings and defaults of a description; the results for the last eight descriptions are cached.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [each.where for each in caveats(double_triangle()).warnings]
@@ -87,7 +87,7 @@ def caveats(mechanism: Mechanism) -> Caveats:
 
 
 def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
-    """Return the default values of unspecified fields, with the key that specifies each.
+    """Return the default value of each unspecified field, with a hint that shows how to specify the field.
 
     >>> defaults(Mechanism("stage"))
     ()
@@ -133,7 +133,7 @@ def _sticking(mechanism: Mechanism) -> Iterator[Default]:
     """Contacts without specified friction."""
     for name, part in mechanism.parts.items():
         if isinstance(part, Contact) and part.friction is None:
-            yield Default(f"parts.{name}", "no slip by default", "For slip, specify friction = 0.15", frozenset({"mapping"}))
+            yield Default(f"parts.{name}", "no slip by default", "For a check of slip, specify friction = 0.15", frozenset({"mapping"}))
 
 
 def _lossless(mechanism: Mechanism) -> Iterator[Default]:
@@ -166,7 +166,7 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
     except DesignError:
         return  # the requirement reports the missing field
     if ground is not None and not ground.stated:
-        advice = f'Specify this material, on which drift depends: ground = "{ground.material}"'
+        advice = f'Specify this material, because drift depends on it: ground = "{ground.material}"'
         yield Default(
             "ground",
             f"material {ground.material} by default: {ground.source}",
@@ -195,9 +195,10 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 @one_thread
 def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return warnings about loads, parts outside the range of beam theory, blocked strokes, and interfering or intruding outlines.
+    """Return warnings about loads, parts outside the range of beam theory, blocked strokes and misplaced outlines.
 
-    A warning about a part with overrides in a link names this link.
+    Outlines are misplaced if they interfere with each other, or enter the aperture. If a link overrides values of its part, a warning about
+    this part names the link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [each.where for each in design_warnings(double_triangle())]
@@ -311,7 +312,7 @@ def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Findi
     safety = np.nan_to_num(np.real(stress.safety).reshape(-1, len(stress.links))[0], nan=np.inf)
     if np.min(safety, initial=np.inf) < 1.0:
         limit = stress.governing[stress.links.index(stress.weakest)]
-        what = f"stress under weight, payloads and forces is {1.0 / float(np.min(safety)):.3g} times its {limit}"
+        what = f"stress under weight, payloads and forces is {1.0 / float(np.min(safety)):.3g} times the {limit}"
         yield Finding(stress.weakest, what, "Check masses and forces, or strengthen the hinge")
 
 
@@ -405,7 +406,7 @@ def _not_straight(mechanism: Mechanism) -> Iterator[Finding]:
     for name, part in mechanism.parts.items():
         if getattr(part, "is_bent", False):
             what = "not straight when free; all models except the model for large displacements assume a straight, stress-free flexure"
-            yield Finding(f"parts.{name}", what, "Run flexstage stroke, or modes --at, to compute the effect")
+            yield Finding(f"parts.{name}", what, "Run flexstage stroke, or flexstage modes --at, to compute the effect")
 
 
 def _room(mechanism: Mechanism) -> tuple[Finding, ...]:

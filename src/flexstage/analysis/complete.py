@@ -60,18 +60,21 @@ _UNLUMPED = "only the lumped model computes this result"
 class Analysis(InNotebook):
     """All results of one model of a stage. A field without a result is `None`; `missing` has the reason by field name.
 
-    `response` is the frequency response from the actuators' inputs to the platform's twist and all gauges, `transmissibility` the one from
-    the ground to the platform. Only the lumped model gives drift, error budget, `units` (each distinct isolated unit), and `deflection` and
-    `buckling` under permanent load. The `verdicts` on requirements are always computed by the lumped model.
+    `response` is the frequency response from the actuators' inputs to the platform's twist and all gauges; `transmissibility` is the
+    frequency response from the ground to the platform. Only the lumped model gives drift, error budget, `units` (results of each distinct
+    unit in isolation), and `deflection` and `buckling` under permanent load. The `verdicts` on requirements are always computed by the
+    lumped model.
 
-    `loaded` is the effect of the permanent load. If the permanent load is significant, statics, modes, responses (`under_load`), lost
-    motion, drift, error budget and their verdicts are for the loaded stage. All other results and the linear model `linear` belong to the
-    nominal stage. `second_order` is the small-displacement error for the required strokes; without required strokes, for the available
-    strokes. `ends` contains the critical load factors at both ends of each load path, computed up to the required factor (None without load
-    paths). The error budget is for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
+    `loaded` is the effect of the permanent load. If this effect is significant, these results and the verdicts on them are for the loaded
+    stage: statics, `freedoms`, `mass`, deflection, modes, responses, lost motion, drift and error budget. All other results and the linear
+    model `linear` belong to the nominal stage. `second_order` is the small-displacement error for the required strokes. If no strokes are
+    required, `second_order` is for the available strokes. `ends` contains the critical load factors at both ends of each load path,
+    computed up to the required factor (None if the design has no load path). The error budget is for 1 K and the required strokes. If no
+    strokes are required, the error budget is for all single-axis strokes at once.
 
-    `freedoms` contains the stiffness along ideal motions and constraints (None for six ideal motions). `mass` is the platform's effective
-    mass. `stress` is computed at the required strokes; for force-driven stages without required strokes, at the limits of short use.
+    `freedoms` contains the stiffness along ideal motions and constraints (None for a stage with six ideal motions). `mass` is the
+    platform's effective mass. `stress` is the hinge stress at the required strokes. If a force-driven stage has no required strokes,
+    `stress` is the hinge stress at the limits of short use.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("an analysis", "fs.analyse(stage)")
@@ -140,10 +143,11 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 @check_arguments
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Return all analyses of one model; without `whole`, only the analyses of the short form, in half the time.
+    """Return all analyses of one model or, if `whole` is false, only the analyses of the short form (in half the time).
 
-    The short form omits responses, isolated units and most of the workspace. Impossible results (lost motion of an under-actuated stage)
-    are `None`, with the reason in `missing`. Raises `DesignError` if the model cannot be built.
+    The short form omits responses, the results of isolated actuation units, and most of the workspace. A result that cannot be computed
+    (e.g. lost motion of an under-actuated stage) is `None`, and `missing` contains the reason. Raises `DesignError` if the model cannot be
+    built.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(analyse(double_triangle(), Model.MAPPED).modes.frequencies[0]), 2)
@@ -228,7 +232,7 @@ def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Wo
 
 
 def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
-    """Return the required platform strokes by coordinate [m, rad], which form a box; `None` if no stroke is required.
+    """Return the required platform strokes by coordinate, as half widths of a box [m, rad]; `None` if no stroke is required.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> required_command(double_triangle())["z"]
@@ -240,7 +244,7 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    """Compute the modes, and list all modes up to the description's frequency limit.
+    """Compute the modes of a stage; the result lists all modes below the `max_mode_frequency` of the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit

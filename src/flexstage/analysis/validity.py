@@ -25,9 +25,10 @@ def validity(part: Mechanism, where: str = "part", material: Material | None = N
 def validity(part: Part | Mechanism, where: str = "part", material: Material | None = None) -> Validity | Mapping[str, Validity]:
     """Assess the range of validity and expected error of beam theory, for a part or all parts of a stage.
 
-    For a single part, messages use the name `where`, and Poisson's ratio is that of `material` (default: 0.3). The parts of a stage have
-    their own names and materials; a specified `material` takes precedence. Returns the validity of the part (see `beams.validity`). For a
-    stage, returns the validity of each part by its address `parts.NAME`, or by link if the link overrides the part.
+    If `part` is a single part, the result is its validity (see `beams.validity`). Messages then use the name `where` for the part, and
+    Poisson's ratio is that of `material` (default: 0.3). If `part` is a stage, the result contains the validity of each part under the
+    address `parts.NAME`. If a link overrides numbers of its part, the result contains the overridden part under the name of the link.
+    Messages then use these names, and a specified `material` replaces the material of every part.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = validity(parallelogram())

@@ -1,4 +1,4 @@
-"""The doctor: checks of the installation, each with a remedy. They print nothing, return rows, and run even if packages are missing."""
+"""The doctor: checks of the installation, each with a remedy. Checks print nothing, return rows, and run even if packages are missing."""
 
 from __future__ import annotations
 
@@ -183,5 +183,5 @@ def _run_self_test(self_test: Callable[[], Row] | None) -> Row:
         return self_test() if self_test else Row("self-test", "none", "none", Verdict.NOTE)
     except Exception as error:  # noqa: BLE001 (the doctor reports all errors)
         return Row(
-            "self-test", f"{type(error).__name__}: {error}", "passes", Verdict.BAD, "correct the rows above; else report this as a bug"
+            "self-test", f"{type(error).__name__}: {error}", "passes", Verdict.BAD, "correct errors above; if none, report this as a bug"
         )

@@ -41,5 +41,5 @@ def self_test() -> Row:
     found = modes(mapped(double_triangle())).frequencies
     worst = max(abs(have / want - 1.0) for have, want in zip(found, FREQUENCIES, strict=True))
     verdict = Verdict.GOOD if worst < _TOLERANCE else Verdict.BAD
-    remedy = "" if verdict is Verdict.GOOD else "reinstall numpy and scipy; else report this as a bug"
+    remedy = "" if verdict is Verdict.GOOD else "reinstall numpy and scipy; if this does not help, report it as a bug"
     return Row("self-test", f"largest relative error of the frequencies {worst:.1e}", f"{_TOLERANCE:.0e}", verdict, remedy)

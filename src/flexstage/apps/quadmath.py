@@ -41,7 +41,7 @@ def provide(folders: Iterable[Path | str]) -> str:
     copies = (found for folder in known for carrier in _CARRIERS for found in sorted((folder / carrier).glob("libquadmath-*.so*")))
     copy = next(copies, None)
     if copy is None:
-        return f"no package contains a copy of {_NAME}; install the one of the system (Debian: apt-get install libquadmath0)"
+        return f"no package contains a copy of {_NAME}; install the library of the system (Debian: apt-get install libquadmath0)"
     try:
         _copy(copy, place)
     except OSError as error:

@@ -1,6 +1,6 @@
 """Conversion and validation of arguments according to the annotation of their field or parameter.
 
-The annotations are the same as for files and schemas. `section: LeafSection` accepts a member or its spelling in files ("beam").
+The annotations are the same as for files and schemas. `section: LeafSection` accepts an enum member or its spelling in files ("beam").
 `Annotated[Number, LENGTH]` accepts a finite number or an array. Other values raise an error with the name of the argument.
 """
 
@@ -41,7 +41,7 @@ class Demand:
 
 
 GAPS = Demand(finite=False)
-"""Annotation of an array with possibly missing samples (NaN)."""
+"""Annotation of an array that may have missing samples (NaN)."""
 
 
 UNLIMITED = Demand(finite=False)
@@ -49,7 +49,7 @@ UNLIMITED = Demand(finite=False)
 
 
 WRITTEN = "WRITTEN"
-"""Name of a class attribute of descriptions and results: a noun, and a call that creates such an object (`fs.lumped(stage)`)."""
+"""Name of the class attribute with two texts for messages: a noun for the object, and a call that creates it (`fs.lumped(stage)`)."""
 
 
 class MismatchError(Exception):
@@ -290,7 +290,7 @@ def _whole(bound: Bound | None, value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise MismatchError(value, "a whole number", "Give an int")
     if bound is not None and not bound.low <= value <= bound.high:
-        raise MismatchError(value, f"a whole number of {bound.whole()}", "Use an int within these limits")
+        raise MismatchError(value, f"a whole number, {bound.whole()}", "Use an int within these limits")
     return int(value)
 
 

@@ -71,7 +71,7 @@ class LowerBoundError(DesignError):
 
 
 def require(findings: Iterable[Finding]) -> None:
-    """Raise a `DesignError` with all findings, or return if there are none.
+    """Raise a `DesignError` with all findings, or return if there are no findings.
 
     >>> require([])
     """

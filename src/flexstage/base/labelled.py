@@ -11,7 +11,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 
 NOISE = 1e-9
-NOISE_RULE = "0: rounding noise, below 1e-9 times the geometric mean of the largest entries (in SI units) of its row and its column."
+NOISE_RULE = "0: rounding noise. The entry is below 1e-9 times the geometric mean of the largest entries in its row and column (SI units)."
 """Note for tables: the rule by which rounding noise is shown as 0."""
 
 

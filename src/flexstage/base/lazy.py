@@ -11,8 +11,8 @@ from flexstage.base.renamed import new_name
 def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
     """Return `__getattr__` and `__dir__` of a package whose names are imported at first use.
 
-    `homes` maps each module below the package to its names. Other names raise `AttributeError`. A name must not be a module of the package:
-    importing that module would replace the name.
+    `homes` maps each module below the package to the names that this module provides. Other names raise `AttributeError`. A name must not
+    also be the name of a module in the package: importing that module would replace the name.
     """
     home = {name: module for module, names in homes.items() for name in names.split()}
 
@@ -28,7 +28,7 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
 
 
 class LazyModule:
-    """Stand-in for a module with this full name; the module is imported at first use.
+    """Stand-in for the module with the given full name; the module is imported at first use.
 
     >>> LazyModule("math").floor(1.5)
     1
@@ -38,5 +38,5 @@ class LazyModule:
         self._module = module
 
     def __getattr__(self, name: str) -> Any:
-        """Return a name of the module. Raises `AttributeError` for others, and `ImportError` if the module is missing."""
+        """Return an attribute of the module. Raises `AttributeError` for an unknown name, and `ImportError` if the module is missing."""
         return getattr(import_module(self._module), name)

@@ -30,7 +30,7 @@ class Table(Mapping[str, Any]):
     def __init__(self, items: Mapping[str, Any], rule: object = None) -> None:
         self._items = {name: freeze(value) for name, value in items.items()}
         self.rule = rule
-        """Rule that all values satisfy, so that copies of a description skip it."""
+        """Rule that all values are known to satisfy; copies of a description need not check it again."""
 
     def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
         return Table, (self._items,)
@@ -79,7 +79,7 @@ def _frozen_array(value: Array) -> Any:
 
 
 def stack(values: Any) -> Array:
-    """Stack numbers of a (nested) sequence along new last axes, broadcasting their batch axes.
+    """Stack the numbers of a (nested) sequence along new last axes; the batch axes of the numbers are broadcast.
 
     >>> stack([1.0, np.array([2.0, 3.0])]).tolist()
     [[1.0, 2.0], [1.0, 3.0]]

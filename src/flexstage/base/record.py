@@ -1,9 +1,9 @@
-"""Records: results with annotated fields. One function (`walk`) reads them for documents, tables and their description.
+"""Records: results with annotated fields. One function (`walk`) reads the fields of a result for documents and tables.
 
 The key of a field is its name; for a number, the SI unit is appended: `natural: Annotated[Array, FREQUENCY]` has the key `natural_hz`. For
-an array, `Along` can name another field with the names of the last axis: `Annotated[Array, LENGTH, Along("actuators")]`. Such an array is
-written as one value per name. A property is included if its type is annotated with a quantity or `VIEW`. Arrays without annotation, `INNER`
-fields and descriptions are omitted. Absent values are None; `reasons` gives the reason by field.
+an array, `Along` can refer to another field that names the entries of the last axis: `Annotated[Array, LENGTH, Along("actuators")]`. An
+array with this annotation is written as one value per name. A property is included if its type is annotated with a quantity or `VIEW`.
+Arrays without annotation, `INNER` fields and descriptions are omitted. Absent values are None; `reasons` gives the reason by field.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ VIEW, INNER = Walked.VIEW, Walked.INNER
 
 @dataclass(frozen=True)
 class Along:
-    """Annotation of an array: `names` is the result field that labels its last axis with names."""
+    """Annotation of an array: `names` is the field of the result that contains a name for each entry of the array's last axis."""
 
     names: str
 
@@ -70,7 +70,7 @@ class UnitIn:
 
 @dataclass(frozen=True)
 class Called:
-    """Annotation with the `key` of a field whose symbol is not a Python name (R_a)."""
+    """Annotation with the `key` that replaces the field's name in documents."""
 
     key: str
 
@@ -93,7 +93,7 @@ class Mark(Enum):
 class Graded:
     """Grade of a number by its magnitude: `best` if it is at most `good`, a warning if at most `poor`, otherwise failed.
 
-    If `good` exceeds `poor`, larger numbers are better, and both are lower limits.
+    If `good` exceeds `poor`, larger numbers are better, and `good` and `poor` are lower limits.
     """
 
     good: float
@@ -210,7 +210,7 @@ class Field:
 
     @property
     def along(self) -> str | None:
-        """Name of the field with the names of the array's last axis; `None` if there is none."""
+        """Name of the field that names the entries of the array's last axis; `None` if there is no such field."""
         along = self.annotation(Along)
         return along.names if along else None
 
@@ -237,7 +237,7 @@ def result_fields(kind: type) -> Mapping[str, Field]:
 
 @functools.cache
 def walked_fields(kind: type) -> tuple[Field, ...]:
-    """Return the document fields of a result class: its dataclass fields, then its annotated properties."""
+    """Return the fields of a result class that documents contain: its dataclass fields, then its annotated properties."""
     own = {each.name for each in fields(kind)}
     result = {name: each for name, each in result_fields(kind).items() if name != "reasons"}
     return tuple(
@@ -250,7 +250,7 @@ def walked_fields(kind: type) -> tuple[Field, ...]:
 def field_of(kind: type, path: str) -> Field:
     """Return a field of a result class by its name, or by its path through nested results.
 
-    A nested field inherits quantity and heading by default.
+    By default, a nested field has the quantity and heading of the field that contains it.
 
     >>> field_of(Field, "heading.digits").heading.text
     'digits'

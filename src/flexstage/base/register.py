@@ -1,4 +1,4 @@
-"""Registers of kinds: the layer's own kinds, and kinds that other packages provide through entry points."""
+"""Registers of kinds: flexstage's own kinds, and kinds that other packages provide through entry points."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Entry = TypeVar("Entry")
 
 @dataclass(frozen=True)
 class Register(Generic[Entry]):
-    """Entries by kind: `own` entries, and entries of installed packages in the entry-point `group`, loaded on first use."""
+    """Entries by kind: `own` entries, and entries of installed packages in the entry-point `group`, which are loaded on first use."""
 
     group: str
     own: Mapping[str, Entry]
@@ -29,7 +29,7 @@ class Register(Generic[Entry]):
         yield from dict.fromkeys(offer.name for offer in _offered(self.group) if offer.name not in self.own)
 
     def get(self, kind: str) -> Entry | None:
-        """Return the entry of a kind, or `None` if there is none. Raises `DesignError` if the entry cannot be loaded or exists twice.
+        """Return the entry of a kind, or `None` if there is none. Raises `DesignError` if it cannot be loaded or has several providers.
 
         >>> Register("flexstage.nothing", {"leaf": 1.0}).get("leaf")
         1.0
@@ -37,7 +37,7 @@ class Register(Generic[Entry]):
         offers = [offer for offer in _offered(self.group) if offer.name == kind]
         if len(offers) + (kind in self.own) > 1:
             who = ", ".join([*(["flexstage"] if kind in self.own else []), *(_distribution(offer) for offer in offers)])
-            raise refuse(f"{self.group}: {kind}", f"several packages provide it: {who}", "Uninstall all of these packages but one")
+            raise refuse(f"{self.group}: {kind}", f"several packages provide this kind: {who}", "Uninstall all of these packages but one")
         return self.own[kind] if kind in self.own else _load(offers[0]) if offers else None
 
     def offer(self, kind: str) -> str:
@@ -94,5 +94,5 @@ def _load(offer: EntryPoint) -> Entry:  # type: ignore[type-var]
     try:
         return offer.load()
     except Exception as error:
-        what = f"{_distribution(offer)} provides it, but it cannot be loaded: {type(error).__name__}: {error}"
+        what = f"{_distribution(offer)} provides this kind, but the kind cannot be loaded: {type(error).__name__}: {error}"
         raise refuse(f"{offer.group}: {offer.name}", what, "Reinstall this package, or ask its maintainer") from error

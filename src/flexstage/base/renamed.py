@@ -31,7 +31,7 @@ RENAMED = tuple(zip(_WORDS, _WORDS, strict=True))
 
 
 def new_name(old: str, known: Collection[str]) -> str | None:
-    """Return the `known` name that replaced the name `old`; `None` without such a name, or if `old` itself is known.
+    """Return the `known` name that replaced the name `old`; `None` if no known name replaced it, or if `old` itself is known.
 
     >>> new_name("mode_limit", ["name", "max_mode_frequency"]), new_name("by", ["by", "method"])
     ('max_mode_frequency', None)

@@ -1,4 +1,4 @@
-"""Amplified actuators and stepping drives: the specified 6x6 stiffness matrix, with half of the mass and inertia at each face."""
+"""Law of amplified actuators and stepping drives: their specified 6x6 stiffness matrix, and half of their mass and inertia at each face."""
 
 from flexstage.beams.law import PartLaw
 

@@ -17,8 +17,8 @@ from flexstage.parts.section import Section
 class Beam:
     """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), for (x, y, z, rx, ry, rz).
 
-    The flexibilities are 1/(E A), k/(G A) for y and for z (shear factor k), the twist rate per torque, 1/(E I_y) and 1/(E I_z). The
-    inertias are rho A for x, y and z, and rho I_p, rho I_y, rho I_z for the rotations, with the density rho.
+    The flexibilities are 1/(E A) for x, k/(G A) for y and for z (shear factor k), the twist rate per torque for rx, 1/(E I_y) for ry and
+    1/(E I_z) for rz. The inertias are rho A for x, y and z, and rho I_p, rho I_y, rho I_z for the rotations, with the density rho.
     """
 
     points: Stations
@@ -30,7 +30,8 @@ class Beam:
     def diagonal(self) -> Array:
         """Compute the diagonal (..., 6) of the compliance about the centre.
 
-        C_x, C_rx, C_ry and C_rz are the integrals of the flexibilities f; C_y is that of f_y + x^2 f_rz, and C_z that of f_z + x^2 f_ry.
+        C_x, C_rx, C_ry and C_rz are the integrals of the flexibilities f; C_y is the integral of f_y + x^2 f_rz, and C_z the integral of
+        f_z + x^2 f_ry.
         """
         weight = 2.0 * self.points.rule.weights * self.points.rate
         plain = (weight[..., None, :] @ self.flexibility)[..., 0, :]

@@ -1,7 +1,7 @@
 """Compliance, stiffness and part law by beam theory, about the part's centre and in its link frame.
 
-Both ends are rigidly extended to the centre. The compliance times the wrench on the second end gives the relative twist, second end minus
-first, both at the centre.
+Both ends are rigidly extended to the centre. The compliance times the wrench on the second end is the twist of the second end minus the
+twist of the first end. Wrench and twists are about the centre.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Law:
 
 
 def compliance(part: Elastic, material: Material | None) -> Array:
-    """Compute the compliance (..., 6, 6) of a part about its centre, rows (x, y, z, rx, ry, rz), SI.
+    """Compute the compliance (..., 6, 6) of a part about its centre in SI units, with rows and columns (x, y, z, rx, ry, rz).
 
     The matrix is diagonal, except for parts with a specified matrix. Notches, necks, leaves and rods need a `material`.
 
@@ -110,7 +110,7 @@ def law(part: Part, material: Material | None) -> Law:
 def viscous_damping(part: Part) -> Array | None:
     """Return the viscous damping (..., 6, 6) [N s/m] of a part about its centre, or `None` if the part has none.
 
-    A restricted part keeps the damping of its elastic DOFs.
+    The result for a restricted part contains only the damping of its elastic DOFs.
 
     >>> from flexstage.parts.voice_coil import VoiceCoil
     >>> viscous_damping(VoiceCoil(force_constant=10.0, damping=2.0)).diagonal().tolist()
@@ -126,7 +126,7 @@ def viscous_damping(part: Part) -> Array | None:
 
 @SESSION.keep(32)
 def fixed_end_modes(part: Elastic, material: Material | None) -> tuple[FixedEndModes, ...]:
-    """Compute the `inner_modes` lowest fixed-end modes of a part, at the stations of its beam.
+    """Compute the lowest fixed-end modes of a part at the stations of its beam; their number is the part's `inner_modes`.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -148,7 +148,7 @@ def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
 
 
 def law_of(part: Part) -> PartLaw | None:
-    """Return the law for the kind of a part, or `None` if there is none. For a restricted part, the law is that of the part inside."""
+    """Return the law for the kind of a part, or `None` if there is none. For a restricted part, return the law of the part inside."""
     return LAWS.get(inner(part).kind)
 
 

@@ -33,9 +33,9 @@ class _HalfCross(Rectangle):
 def cruciform_beam(part: Cruciform, material: Material) -> Beam:
     """Build the Timoshenko beam of a cruciform hinge. Both leaves carry equal torque, with restrained warping as in `beams.torsion`.
 
-    For thin leaves, the torsional stiffness approaches Vlasov's (Thin-Walled Elastic Beams, 1961):
+    For thin leaves, the torsional stiffness K approaches the result of Vlasov (Thin-Walled Elastic Beams, 1961):
 
-    K = G J / L / (1 - tanh(k L / 2) / (k L / 2)), k^2 = G J / (E C_w), with the length L, the torsion constant J and the warping constant
+    K = G J / (L (1 - tanh(k L / 2) / (k L / 2))), k^2 = G J / (E C_w), with the length L, the torsion constant J and the warping constant
     C_w. The restrained contraction at the rigid ends is neglected.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -54,7 +54,8 @@ def cruciform_beam(part: Cruciform, material: Material) -> Beam:
 def torsional_buckling(part: Cruciform, material: Material) -> Number:
     """Compute the torsional buckling load G J A / I_p [N], for any length (Timoshenko & Gere, Theory of Elastic Stability, 5.4).
 
-    Restrained warping at the ends raises this load; the increase is neglected.
+    I_p is the polar second moment and A the area of the section, J its torsion constant. Restrained warping at the ends raises the load;
+    this increase is neglected.
     """
     section = part.throat
     return material.shear * section.torsion * section.area / section.polar

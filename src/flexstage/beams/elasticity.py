@@ -1,10 +1,10 @@
 """Deviation of beam theory from three-dimensional elasticity: the expected model error of a hinge, fitted to finite elements.
 
-Each law is the compliance of beam theory plus the neglected terms:
+Each law is the compliance of beam theory plus the terms that beam theory neglects:
 
-- root compliance of the blocks (proportional to the root of t/R),
-- contraction that wide hinges and clamped ends prevent (Poisson's ratio squared, over the width),
-- shear that clamped ends change.
+- compliance of the hinge's roots in the blocks (proportional to (t/R)^(1/2), with thickness t and throat radius R),
+- contraction that wide hinges and clamped ends prevent (proportional to the square of Poisson's ratio),
+- change of the shear deformation by clamped ends.
 
 `python -m tools.validation.beam_errors` computes hinge compliances by finite elements, fits the coefficients and prints both.
 """
@@ -66,9 +66,9 @@ class HingeDimensions:
         return 2.4 * (1.0 + self.poisson) * self.beam[..., 0]
 
     def plane_strain(self, scale: float, power: float, size: Array) -> Array:
-        """Compute the plane-strain factor: 1 - nu^2 for a width far above `scale` times `size`, 1 for a width far below.
+        """Compute the plane-strain factor: 1 - nu^2 if the width is far above `scale` times `size`, and 1 if it is far below this product.
 
-        Here nu is Poisson's ratio, and `power` the exponent of the transition from narrow to wide hinges.
+        Here nu is Poisson's ratio, and `power` is the exponent of the transition from narrow to wide hinges.
         """
         return 1.0 - self.poisson**2 / (1.0 + (scale * size / self.width) ** power)
 
@@ -78,7 +78,7 @@ Law = Callable[[HingeDimensions, Numbers], Array]
 
 
 def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the tensile compliance of a notch and its roots (fitted), reduced by restrained contraction."""
+    """Compute the tensile compliance of a notch and the fitted compliance of its roots, both reduced by restrained contraction."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
@@ -98,7 +98,7 @@ def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the bending compliance of a notch about y, in the plane of its width, like `notch_x`; narrow roots are stiffer."""
+    """Compute the bending compliance of a notch about y, in the plane of its width, like `notch_x`; roots of narrow notches are stiffer."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
     share = 1.0 / (1.0 + p[5] * (hinge.along / hinge.width) ** p[6])
@@ -113,7 +113,7 @@ def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def fillet_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the transverse compliance of a fillet: bending (plate action if wide), shear, root rotation, and block as in `notch_y`."""
+    """Compute the transverse compliance of a fillet: bending (plate action if wide), shear, root rotation, block of `notch_y`."""
     bent = _plate_share(hinge, shear_factor, p[3], p[4]) * (hinge.beam[..., 1] - hinge.shear_share)
     turned = _root_rotation(hinge, p) * (hinge.half - p[2] * hinge.along) ** 2
     return bent + hinge.shear_share * (1.0 + p[5] * hinge.root) + turned - _block_as_plate(hinge, p[6], p[7])
@@ -215,7 +215,7 @@ def _saturate(share: Array) -> Array:
 def toroidal(hinge: HingeDimensions, p: Numbers, index: int) -> Array:
     """Compute the compliance of a toroidal neck: the compliance by beam theory, multiplied by a fitted factor.
 
-    The factor is exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3))), with thickness t, radius R, Poisson's ratio nu and coefficients `p`.
+    The factor is exp((t/R) (p0 + p1 (t/R)^(1/2) + p2 (nu - 0.3))), with thickness t, radius R, Poisson's ratio nu and coefficients `p`.
     """
     return hinge.beam[..., index] * np.exp(hinge.root**2 * (p[0] + p[1] * hinge.root + p[2] * (hinge.poisson - 0.3)))
 

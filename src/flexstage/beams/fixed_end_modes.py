@@ -1,15 +1,16 @@
 """Fixed-end modes of prismatic parts (Ritz's method): transverse bending, and twist.
 
-The polynomials vanish at both ends. Their number exceeds the number of requested modes, so that the lowest modes are correct to 1e-4 or
-better. Bending is by Timoshenko's theory: deflection w, section rotation psi.
+The trial functions are polynomials that are zero at both ends. Their number exceeds the number of requested modes, so that the lowest modes
+are correct to 1e-4 or better. Bending is by Timoshenko's theory: deflection w, section rotation psi.
 
 A plate (Kirchhoff) also bends across its width. In bending, its deflection is w plus Legendre polynomials of even degree in z; in twist,
-it is phi z plus polynomials of odd degree. All these terms are zero at the clamped ends. The strain energy U of a plate is
+its deflection is phi z plus polynomials of odd degree, with the twist angle phi. All these terms are zero at the clamped ends. The strain
+energy U of a plate is
 
     2 U = integral of D (w_xx^2 + 2 nu w_xx w_zz + w_zz^2 + 2 (1 - nu) w_xz^2) + S (w' - psi)^2 dx,   D = E t^3 / (12 (1 - nu^2)),
 
-with psi' for the mean of w_xx over the width, and S the shear stiffness. A narrow plate bends with E I, a short wide plate with E I / (1 -
-nu^2). Shear at the edges reduces the twist stiffness: G J of the section replaces 2 (1 - nu) D b.
+where psi' replaces the mean of w_xx over the width, and S is the shear stiffness. A narrow plate bends with E I, a short wide plate with E
+I / (1 - nu^2). Shear at the edges reduces the twist stiffness: G J of the section replaces 2 (1 - nu) D b.
 
 The energy of a twisted beam is 2 U = integral of G J phi'^2 + E C_w phi''^2 dx, with phi' = 0 at ends with restrained warping.
 
@@ -61,8 +62,8 @@ class Torsion:
     """Part that twists: `length`, torsional `rigidity` G J, and `inertia` about its axis per length.
 
     `warping` is E C_w (absent: free warping), and `warping_inertia` rho C_w, with Young's modulus E, density rho and the warping constant
-    C_w. For a `plate` of width b and plate rigidity D, the warping stiffness is D b^3 / 12, with polynomials of higher degree across the
-    width.
+    C_w. For a `plate` of width b and plate rigidity D, `warping` is D b^3 / 12, and the deflection includes polynomials of higher degree
+    across the width.
     """
 
     length: Number

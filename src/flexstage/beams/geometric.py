@@ -39,7 +39,7 @@ class Geometric:
 
 @keep
 def geometric(part: Part, material: Material | None) -> Geometric:
-    """Compute the geometric stiffness of any part; a part without length (a compliance matrix, a joint) is a point.
+    """Compute the geometric stiffness of any part; a part without length (a compliance matrix, a joint) is treated as a point.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.06, thickness=0.0003, width=0.02)
@@ -59,7 +59,8 @@ def foreshortening(part: Part, material: Material | None) -> Array:
     """Compute the foreshortening matrices G (6, 6, 6): a relative twist e of the ends causes the second-order deformations 1/2 e^T G_i e.
 
     The twist is about the part's centre. The deformation is due to bending and twist; the axial stretch is neglected. The geometric
-    stiffness under the wrench w is that of a bushing plus the sum of w_i G_i over the components i. G is zero for parts without length.
+    stiffness under the wrench w is that of a part without length plus the sum of w_i G_i over the components i. G is zero for parts without
+    length.
     """
     own, axis = geometric(part, material), np.eye(3)[0]
     result = own.per_force[..., 6:ENDS, 6:ENDS] - _of_point().per_force[:, 6:, 6:]

@@ -14,7 +14,7 @@ from flexstage.beams.beam import Beam
 from flexstage.beams.fixed_end_modes import FixedEndModes
 from flexstage.parts.material import Material
 
-_CALIBRATE = 'Specify a measured or computed 6x6 compliance matrix (kind = "compliance_matrix"), or expect a larger error than listed'
+_CALIBRATE = 'Specify a measured or computed 6x6 compliance matrix (kind = "compliance_matrix"), or expect a larger model error'
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ def _no_family(_: Any) -> str | None:
 
 @dataclass(frozen=True)
 class PartLaw:
-    """Law of a kind of part: functions of a part, or of a part and its material (`None` if `needs_material` is false).
+    """Law of a kind of part: functions of a part, or of a part and its material. The material is `None` if `needs_material` is false.
 
     Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. For plates, `diagonal` (..., 6) replaces the
     beam's compliance. All 6x6 matrices are about the centre. These entries describe a part without a beam:
@@ -67,11 +67,12 @@ class PartLaw:
     Optional entries:
 
     - `damping`: the viscous damping (..., 6, 6) [N s/m];
-    - `twisting_load`: the compression [N] at which a column buckles in twist, for kinds where it can be below Euler's load;
+    - `twisting_load`: the compression [N] at which a column buckles in twist, for kinds of parts in which this load can be below Euler's
+      load;
     - `concentration`: the stress concentration factor of the part's notches; if this factor is missing or `None`, the stress is unknown;
     - `ranges`: ratios of dimensions with the intervals that were compared with finite elements;
     - `family`: the name of the fitted function for the model error;
-    - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations x divided by the half length (-1 to 1).
+    - `fixed_end_modes`: the lowest fixed-end modes (number: `inner_modes`), at stations x divided by the half length (-1 to 1).
     """
 
     beam: Callable[[Any, Any], Beam] | None = None

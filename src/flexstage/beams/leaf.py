@@ -39,7 +39,7 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
 
     The leaf is a Timoshenko beam with two changes: the bending compliance about z is divided by the plate factors of `beams.plate`, and the
     torsional compliance is that of `torsional_compliance`. In-plane bending and tension have the compliance of the beam. Restrained
-    contraction is neglected: for b >> L, the true compliance is smaller, by a factor down to 1 - nu^2.
+    contraction is neglected: if the width is much larger than the length, the true compliance is smaller, by a factor down to 1 - nu^2.
 
     If `section` is "beam", all six entries are those of `leaf_beam`, a textbook frame element.
 
@@ -69,7 +69,7 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
 def torsional_compliance(part: Leaf, material: Material) -> Number:
     """Compute the torsional compliance of a leaf with restrained warping [rad/(N m)].
 
-    The compliance is (L / (G J)) (1 - tanh(lam) / lam) with lam = (L/b) sqrt(6 / (1 + nu)).
+    The compliance is (L / (G J)) (1 - tanh(lam) / lam) with lam = (L/b) sqrt(6 / (1 + nu)), length L and width b.
 
     J is the torsion constant of the rectangle. If the ends may warp, the compliance is L / (G J). Compared with plate elements (reference
     B6), the compliance is too large by 0.2 % at b/L = 0.1, 1.2 % at 0.5 and 6 % at 2.

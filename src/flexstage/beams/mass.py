@@ -21,13 +21,13 @@ from flexstage.parts.part import Elastic, Part, Restricted, inner
 
 @keep
 def mass(part: Part, material: Material | None) -> Array:
-    """Compute the mass (..., 12, 12) of a part for the twists of its first and second end, both at its centre, in the link frame [SI].
+    """Compute the mass matrix (..., 12, 12) of a part for the twists of its first and second end, at its centre, in the link frame [SI].
 
     The twist of the section at x is v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), with the twists q_a, q_b of the ends and Gamma(x) = S(x) K.
-    X_x transports a twist from the centre to x. S is the compliance accumulated from the first end to x, and K = S(end)^-1. The mass is M =
-    integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = X_x [1 - Gamma, Gamma]. The mass includes the
-    material between the ends of the profile. In a rigid motion, the inertia of the solid is exact. A `ComplianceMatrix` part has half its
-    mass at each end; `Joint` and `Restricted` parts are massless.
+    X_x transports a twist from the centre to x. S is the compliance accumulated from the first end to x, and K = S(end)^-1. The mass matrix
+    is M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = X_x [1 - Gamma, Gamma]. The matrix includes
+    the material between the ends of the profile. For rigid motions, the mass matrix is the exact inertia of the solid. A `ComplianceMatrix`
+    part has half its mass at each end; `Joint` and `Restricted` parts are massless.
 
     For a part with m fixed-end modes, the matrix is (..., 12 + m, 12 + m). The matrix contains the unit masses of the modes, and the
     coupling of the modes to the motion of the ends.
@@ -49,7 +49,7 @@ def mass(part: Part, material: Material | None) -> Array:
 
 @keep
 def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
-    """Compute the law and the mass of a part (see `law` and `mass`) with a single integration of its beam.
+    """Compute the law and the mass matrix of a part (see `law` and `mass`) with a single integration of its beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
     >>> from flexstage.parts.rod import Rod

@@ -1,11 +1,11 @@
 """Flat annular membranes: thin plates for motion out of their plane, discs for motion in their plane.
 
-With a and b the radii of hub and rim, D = E t^3 / (12 (1 - nu^2)), kappa = (3 - nu) / (1 + nu) of plane stress, and e = (b^2 - a^2) / (b^2
-+ a^2), the stiffnesses are:
+With a and b the radii of hub and rim, t the thickness, D = E t^3 / (12 (1 - nu^2)), kappa = (3 - nu) / (1 + nu) of plane stress, and e =
+(b^2 - a^2) / (b^2 + a^2), the stiffnesses are:
 
     along x      16 pi D / (b^2 (1 - s^2 - 4 s^2 ln(s)^2 / (1 - s^2))), s = a / b    (Timoshenko & Woinowsky-Krieger, Plates, section 17)
-    about y, z   4 pi D / (ln(b/a) - e)                                              (as r, r^3, 1/r and r ln r fit clamped edges)
-    along y, z   2 pi (1 + kappa) G t / (kappa ln(b/a) - e / kappa)                  (as ln z, z^2 and 1/z^2 do: Muskhelishvili)
+    about y, z   4 pi D / (ln(b/a) - e)                                              (sum of r, r^3, 1/r and r ln r, clamped edges)
+    along y, z   2 pi (1 + kappa) G t / (kappa ln(b/a) - e / kappa)                  (sum of ln z, z^2 and 1/z^2: Muskhelishvili)
     about x      4 pi G t a^2 b^2 / (b^2 - a^2)
 """
 

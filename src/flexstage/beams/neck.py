@@ -16,7 +16,7 @@ from flexstage.parts.section import Rectangle, circle, cowper_circle
 
 
 def neck_beam(part: Neck, material: Material) -> Beam:
-    """Build the Timoshenko beam of a neck: round (Cowper's shear factor), or rectangular (6/5) with the profile on both sides.
+    """Build the Timoshenko beam of a neck: round (Cowper's shear factor), or rectangular (shear factor 6/5) with two profiles.
 
     >>> from flexstage.parts.profile import Circular
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)

@@ -1,13 +1,13 @@
 """Plate action of leaf springs: bending stiffness between a beam and a plate in plane strain.
 
 A leaf bent about its width has anticlastic curvature across the width, except near its clamped ends. A narrow leaf is a beam of rigidity
-EI, a wide leaf a plate of rigidity EI / (1 - nu^2). Let s be the fraction of the length in which the leaf curves freely, weighted by the
-squared bending moment. Then
+EI; a wide leaf is a plate of rigidity EI / (1 - nu^2), with Poisson's ratio nu. Let s be the fraction of the length in which the leaf
+curves freely, weighted by the squared bending moment. Then
 
     1 / factor = (1 - nu^2) + nu^2 s(L / b).
 
 s depends little on nu. It is a rational function of L/b between two limits: s -> 1 - const b/L for narrow leaves, s -> const L/b for wide
-leaves. The constants are fitted to a converged Ritz solution of the thin plate (tests/analytic). The factors agree with this solution
+leaves. The constants are fitted to a converged Ritz solution of the thin plate (tests/analytic). The plate factors agree with this solution
 within 0.06 % for b/L from 0.03 to 8 and nu from 0.1 to 0.45. They agree within 0.08 % with the plate elements of reference B6.
 """
 

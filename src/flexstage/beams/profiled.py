@@ -13,12 +13,12 @@ HIGHEST = {"notch": 0.8, "fillet": 1.0, "toroid": 0.5}
 
 
 def concentration(profile: Profile, thickness: Number) -> Number | None:
-    """Compute the notch factor in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), with thickness t and radius R at the throat.
+    """Compute the notch factor in bending, K_t = (1 + t/(2 R))^(9/20) (Smith, Flexures, 2000), with thickness t and radius R at the throat.
 
     R is a^2/c for an ellipse with the semi-axes a along and c across the hinge, and the fillet radius for a corner-filleted hinge. A
     straight hinge has K_t = 1, because its corners are not specified.
 
-    For t/2R up to 1, the errors relative to plane-stress finite elements with full-height blocks (tests/elsewhere) are:
+    For t/(2 R) up to 1, the errors relative to plane-stress finite elements with full-height blocks (tests/elsewhere) are:
 
     - circular notch: in bending +1 to +2 %, in tension 0 to -13 %;
     - fillets: in bending +3 to +7 %, in tension -2 to -10 %.
@@ -46,7 +46,7 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
 def proportions(profile: Profile, thickness: Number, family: str) -> tuple[Range, ...]:
     """Return the ratio with a validated range: thickness / throat radius, or length / thickness of a straight profile.
 
-    For a `Contour` (V, parabola, table, ...), which was not compared with finite elements, the result is empty.
+    The result is empty for a `Contour` (V, parabola, table, ...), because it was not compared with finite elements.
     """
     return () if isinstance(profile, Contour) else (_proportion(profile, thickness, family),)
 

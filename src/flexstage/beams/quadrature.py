@@ -1,12 +1,12 @@
 """Quadrature stations of beam integrals along a hinge profile.
 
 A hinge is symmetric about its centre. The stations cover the half x >= 0, from the centre to the arc's end, both included, with one
-Gauss-Lobatto rule on each smooth piece. On an arc, the variable is the angle p, stretched by p = d sinh(v), with i d the singularity of 1/h
-(h: thickness) nearest to the centre. Convergence is then equal for thin and thick necks. Integrals of 1/h ... 1/h^4 are correct to 1e-13
-for thickness over radius from 1e-3 upwards, and to 2e-12 at 1e-4.
+Gauss-Lobatto rule on each smooth piece. On an arc, the angle p is stretched by p = d sinh(v), where i d is the singularity of 1/h nearest
+to the centre, and h the thickness. Convergence is then equal for thin and thick necks. Integrals of 1/h to 1/h^4 are correct to 1e-13 for
+thickness over radius from 1e-3 upwards, and to 2e-12 at 1e-4.
 
-Parabolas and hyperbolas use the same stretching. On straight flanks, the variable is chosen such that 1/h is exponential. Power profiles
-have three pieces for any exponent (error 1e-9 at 16). A table has one rule with fewer points for each piece.
+Parabolas and hyperbolas use the same stretching. On straight flanks, 1/h is an exponential function of the integration variable. Power
+profiles have three pieces for any exponent (error 1e-9 at 16). Each piece of a table has its own rule, with fewer points.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Stations:
 
 
 def through(rule: Array, values: Array) -> Array:
-    """Multiply a real matrix (k, m) by values (..., m, n); complex values are multiplied as two real parts.
+    """Multiply a real matrix (k, m) by values (..., m, n); real and imaginary parts are multiplied separately.
 
     >>> through(np.array([[1.0, 2.0]]), np.array([[1.0], [1.0j]])).tolist()
     [[(1+2j)]]
@@ -74,7 +74,7 @@ def through(rule: Array, values: Array) -> Array:
 
 
 def stations(profile: Profile, thinnest: Number) -> Stations:
-    """Build the stations of a profile whose section is `thinnest` [m] at the centre.
+    """Build the stations of a profile; the section has the thickness `thinnest` [m] at the centre.
 
     >>> points = stations(Circular(1.0), 0.1)
     >>> bool(abs(points.whole(1.0 + points.growth) - (2.0 + 2.0 - np.pi / 2.0)) < 1e-14)

@@ -33,7 +33,7 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
 
 
 def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
-    """Compute the diagonal (..., 6) of the compliance about the centre: the beam's compliance, reduced by plate action of its ends.
+    """Compute the diagonal (..., 6) of the compliance about the centre: the beam's compliance, reduced by plate action of the thin ends.
 
     Each thin end, up to its fillet, is treated as a leaf whose two ends cannot curve across the width. `beams.plate` gives different
     stiffness factors for the moment at the centre of the leaf and for the shear force. The thick middle is assumed to prevent curvature of

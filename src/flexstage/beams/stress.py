@@ -1,4 +1,4 @@
-"""Nominal stress in hinges, and stress concentration of their notches. Results are real, not differentiated."""
+"""Nominal stress in hinges, and stress concentration of their notches. Results are real numbers, without complex-step derivatives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Part, inner
 
 FACES = ("faces +-y", "faces +-z", "whole section", "shear and torsion")
-"""Names of the locations in the section with the largest stress due to M_z, to M_y, to N, and to shear force and torque."""
+"""Locations of the largest stress in the section: due to M_z, due to M_y, due to N, and due to shear force and torque."""
 _ALONE: Array = np.array([[0.0, 1, 0, 0, 0, 1], [0, 0, 1, 0, 1, 0], [1, 0, 0, 0, 0, 0]])
 """Components of the wrench that make M_z, M_y and N."""
 _ALIKE = 1e-9

@@ -5,11 +5,11 @@ z, the strain energy U is
 
     2 U = integral of G J phi'^2 + G S (r phi' - theta)^2 + E C_w theta'^2 dx,    theta = 0 at both ends,
 
-J is Saint-Venant's constant, S = I_p / k the shear stiffness (k the shear factor), r = (b^2 - t^2) / (b^2 + t^2), C_w = b^3 t^3 / 144. For
-the shape y z, this is the exact energy of the displacement field with two changes: the factor k, and J instead of b^3 t^3 / (3 (b^2 +
-t^2)).
+J is Saint-Venant's constant, S = I_p / k (polar second moment I_p, shear factor k), r = (b^2 - t^2) / (b^2 + t^2), C_w = b^3 t^3 / 144,
+with width b and thickness t. For the shape y z, U is the exact energy of the displacement field with two changes: the factor k, and J
+instead of b^3 t^3 / (3 (b^2 + t^2)).
 
-Limits:
+Limits of the torsional compliance C, with the transverse compliance C_y:
 
 - slender hinge: C = integral of dx / (G J) (Saint-Venant);
 - wide hinge: C = 12 C_y / b^2 (every strip dz bends as the hinge does);
@@ -21,8 +21,8 @@ No interpolation is needed between these limits. Stiffness errors, compared with
 - t/R = 0.2: below 1 % for widths from 2 t to 10 t, 2 % at 30 t;
 - t/R from 0.5 to 1: +3 to +8 %, and -6 % for a square throat.
 
-Saint-Venant torsion is up to 25 times too soft, 12 C_y / b^2 up to 10 times. The root compliance of full-height blocks makes a wide notch
-up to 20 % softer, as in tension.
+Saint-Venant torsion is up to 25 times too soft, and C = 12 C_y / b^2 is up to 10 times too soft. The root compliance of full-height blocks
+makes a wide notch up to 20 % softer, as in tension.
 """
 
 from __future__ import annotations

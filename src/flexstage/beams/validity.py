@@ -29,7 +29,7 @@ _Bounds = tuple[float, float]
 class Validity(InNotebook):
     """Validity of beam theory for a part: its ranges, relative `errors` of the compliance by component (-0.1: 10 % too low), and warnings.
 
-    A component without an error, or with NaN in a batch, was not compared with finite elements: its error is unknown.
+    If a component has no error, or NaN in a batch, it was not compared with finite elements, and its error is unknown.
     """
 
     ranges: tuple[Range, ...] = ()
@@ -38,13 +38,13 @@ class Validity(InNotebook):
 
 
 def validity(part: Part, where: str = "part", material: Material | None = None) -> Validity:
-    """Estimate the model error of beam theory for a part; `where` names it in the warnings. Poisson's ratio is 0.3 without a material.
+    """Estimate the model error of beam theory for a part; `where` names the part in warnings. Without a material, Poisson's ratio is 0.3.
 
     Compared with three-dimensional finite elements, the estimates are correct within 1 % of the compliance (fillets along y and about z: 2
     %).
 
-    - The error of a notch includes the compliance of its roots, on blocks of full height and width. Straight notches, leaves and rods end
-      at rigid faces.
+    - The error of a notch includes the compliance of its roots in blocks of full height and width. Straight notches, leaves and rods end at
+      rigid faces.
     - Along z and about x, the error of a notch is unknown, because the blocks at its ends are much more compliant.
     - The error of a rectangular part that is thicker than wide is unknown.
     - The error of parts with a specified matrix is not estimated.

@@ -1,4 +1,4 @@
-"""Voice coils: magnet stiffness and damping along x (for rotary coils, about x), and the masses of both sides."""
+"""Voice coils: magnet stiffness and damping along x (for rotary coils, about x), and the masses of coil and magnet."""
 
 from flexstage.beams.law import PartLaw
 

@@ -1,1 +1,1 @@
-"""Shipped stages as functions from parameters to a description, and the catalogue."""
+"""Shipped stages: functions that build a description from parameters, and the catalogue of the stages."""

@@ -23,9 +23,9 @@ class Case:
     summary: str
 
     def build(self, stated: Mapping[str, Stated] | None = None) -> Mechanism:
-        """Build the description with new values of the `stated` parameters: strings with units, SI numbers, or arrays for a batch.
+        """Build the description with the parameter values `stated`: strings with units, SI numbers, or arrays for a batch.
 
-        Tags of changed numbers are removed, because the source in the tag does not contain the new value.
+        The tag of a changed number is removed, because the source in the tag does not contain the new value.
 
         >>> from flexstage.cases.registry import CASES
         >>> CASES["hexapod"].build({"slope": "50 deg"}).name
@@ -34,7 +34,7 @@ class Case:
         return with_parameters(_description(self.name), stated or {})
 
     def text(self, stated: Mapping[str, Stated], heading: str) -> str:
-        """Return the design file, comments included, with new values of the `stated` parameters and a new `heading`."""
+        """Return the design file, including comments, with the parameter values `stated` and a new `heading`."""
         own = {PREFIX + parameter(_description(self.name), name).name: value for name, value in stated.items()}
         text = file_text(self.name)
         head = "".join(f"# {line}".rstrip() + "\n" for line in heading.splitlines())

@@ -34,10 +34,10 @@ EQUATION_3: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {
     "pole_neck": ((Freedom.X,), ROTATIONS),
     "stack_vertical": ((Freedom.X,), ()),
 }
-"""DOFs of a vertical unit in Eq. 3 of the paper: (elastic, free) DOFs of each part; the others are locked."""
+"""DOFs of a vertical unit in Eq. 3 of the paper: (elastic, free) DOFs of each part; all other DOFs are locked."""
 
 TABLE_2_FEA = EQUATION_3 | {"foot_notch": ((Freedom.X, Freedom.RZ), ()), "pole_neck": ((Freedom.X, Freedom.RY, Freedom.RZ), (Freedom.RX,))}
-"""Eq. 3 with the bending of front and pole hinges, which closes the gap to the FEA column of Table 2."""
+"""DOFs of Eq. 3 plus bending of front and pole hinges. This bending closes the gap to the FEA column of Table 2."""
 
 EQUATION_18 = EQUATION_3 | {"neck": ((Freedom.X,), ROTATIONS), "stack_horizontal": ((Freedom.X,), ())}
 """DOFs of the whole stage in Eq. 18 of the paper: axial springs and lever pivots."""

@@ -58,7 +58,7 @@ def parameter(stage: Mechanism, name: str, where: str = "") -> Parameter:
 
 
 def with_parameters(stage: Mechanism, stated: Mapping[str, Stated], where: str = "parameters") -> Mechanism:
-    """Return the case with the `stated` parameters: strings with units, numbers or arrays in SI. Formulas are re-evaluated.
+    """Return the case with the parameter values `stated`: strings with units, or numbers or arrays in SI. Formulas are re-evaluated.
 
     Raises `DesignError` with all errors: unknown names, wrong units, values out of bounds.
 

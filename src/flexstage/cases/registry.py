@@ -17,21 +17,21 @@ from flexstage.mechanism.store import round_to_digits
 
 _SUMMARIES = {
     "double-triangle": "six axes: three direct units inside, three levers outside (Shin & Moon), buildable",
-    "double-triangle-a": "the same stage for checking formulas; cannot be built",
-    "double-triangle-refitted": "the buildable stage with neck and lever notch fitted by FEA instead of beam theory",
+    "double-triangle-a": "the double-triangular stage for checking formulas; cannot be built",
+    "double-triangle-refitted": "the double-triangular stage with neck and lever notch fitted to FEA instead of beam theory",
     "parallelogram": "one axis: a platform on two leaves, pushed by one stack",
     "xy-stage": "two axes: four carriages on leaves around a platform, two of them driven",
     "xy-stage-floating": "the XY stage with one stack only: under-actuated",
     "bridge": "one axis: a rhombus of leaf hinges amplifies one stack about nine times",
     "hexapod": "six axes: six flexure struts in three pairs",
-    "tip-tilt": "tip, tilt and piston of a mirror: three stacks and a guide of three leaves",
+    "tip-tilt": "tip, tilt and piston of a mirror: three stacks, and a guide with three leaves",
     "tip-tilt-four": "the mirror mount on four stacks: redundant actuation",
     "tilt-stage": "one axis: an arm on two cross hinges, turned by a voice coil",
     "voice-coil-stage": "one axis: a platform between double parallelograms, pushed by a voice coil",
     "mirror-mount": "no driven axis: a mirror of one metre on three bipods of blades",
-    "telescope-mount": "no driven axis: a mirror on three bipods of blades, a second one on struts above it",
-    "leaf-guide": "one axis: a platform on two wide leaves, as published with solid elements",
-    "resonator": "one axis: a plate of polysilicon on four straight legs, as published with formulas",
+    "telescope-mount": "no driven axis: a mirror on three bipods of blades, and a second mirror on struts above it",
+    "leaf-guide": "one axis: a platform on two wide leaves, with published results of solid elements",
+    "resonator": "one axis: a plate of polysilicon on four straight legs, with published formulas",
     "quad-suspension": "one axis: four masses on blade springs and silica fibres, as published for a detector",
     "voice-coil-xy": "two axes of long travel: carriages on double parallelograms, pushed by voice coils",
     "long-travel-xy": "two axes of +-5 mm on plain leaves, loaded by weight: for large displacements",
@@ -51,9 +51,9 @@ CASES: Mapping[str, Case] = {name: Case(name, line) for name, line in _SUMMARIES
 def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
     """Return the description of a shipped case with some changed `parameters`.
 
-    Parameters have the names in `flexstage new --list-parameters`; a value is a string with its unit, or a number in SI. Arrays make the
-    description a batch. Constant numbers are rounded to twelve digits. Raises `DesignError` with the nearest name for an unknown case or
-    parameter, and for invalid values.
+    `flexstage new --list-parameters` lists the names of the parameters. A value is a string with a unit, a number in SI units, or an array
+    of such numbers; an array gives a batch of designs. All numbers that are not arrays are rounded to twelve digits. Raises `DesignError`
+    with the nearest name for an unknown case or parameter, and for invalid values.
 
     >>> import numpy as np
     >>> case("hexapod", {"slope": "50 deg", "neck_thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()

@@ -46,7 +46,7 @@ def ideal_compensation(kinematics: Kinematics) -> Compensation:
 def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflection: Array | None = None) -> Compensation:
     """Compute gains that correct lost motion, and strokes that cancel the platform's `deflection` (6,) under loads.
 
-    The strokes a for a pose xi are a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon solved for the strokes, with its load term.
+    The strokes a for a pose xi are a = (R_a V^+ T)^-1 R_a (xi - V^+ C w). This is Eq. 11 of Shin & Moon with the load term, solved for a.
     R_a maps poses to ideal strokes, V^+ projects twists onto the ideal motions, and T is the elastic twist per stroke. C w is the
     `deflection`: the twist of the platform's reference point with all strokes zero (`analysis.deflection`, or the static compliance C times
     a wrench w). Strokes cannot cancel deflections outside the ideal motions. The computation is linear. Raises `DesignError` for a
@@ -77,10 +77,10 @@ def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflectio
 class StaticError(InNotebook):
     """Static error in open loop: `error` (f, f) is the commanded minus the reached pose, per unit of the commanded pose.
 
-    Rows of `error` are the reached coordinates, columns the commanded ones. The diagonal is the error of each axis, the other elements are
-    crosstalk. `parasitic` (6, f) is the motion outside the ideal motions, per unit of the commanded pose. `offset` (6,) is the twist that
-    remains at zero command under the loads. `largest` is the largest error per unit of command in all six directions, with rotations
-    converted to lengths.
+    Each row of `error` belongs to a reached coordinate, each column to a commanded coordinate. The diagonal elements are the errors of the
+    axes, the other elements are crosstalk. `parasitic` (6, f) is the motion outside the ideal motions, per unit of the commanded pose.
+    `offset` (6,) is the twist that remains at zero command under the loads. `largest` is the largest error per unit of command in all six
+    directions, with rotations converted to lengths.
     """
 
     error: Matrix

@@ -33,7 +33,7 @@ from flexstage.show.command.output import announce, write
 
 
 def written_files(exports: Sequence[Path], hardware: Path | None) -> Iterator[tuple[str, Path]]:
-    """List the files of `--export` and `--hardware`, each with its option. C code has several files."""
+    """List the files that `--export` and `--hardware` write, each with its option. C code has several files."""
     for target in exports:
         yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
     if hardware is not None:
@@ -59,7 +59,7 @@ def write_export(found: LoopStudy, target: Path) -> None:
 
 
 def file_findings(asked: forms.LoopSetup, exports: Sequence[Path], hardware: Path | None) -> Iterator[Finding]:
-    """Check that the code can run on an embedded processor, and that a CSV export has a single path, changed by tracking."""
+    """Check that `--hardware` needs no inverse of hysteresis, and that a CSV export has a tracking method and a single path."""
     if hardware is not None and Compensation.HYSTERESIS in asked.compensate:
         yield Finding("--hardware", *NO_INVERSE)
     for target in (each for each in exports if each.suffix == ".csv"):

@@ -61,7 +61,7 @@ class LoopOptions:
         text_option(
             "--controller",
             "KIND",
-            "Kind of controller: pi, pid, resonant, ppf, pvf or lqg; none for an open loop. Default: pi; for force actuators pid.",
+            "Kind of controller: pi, pid, resonant, ppf, pvf or lqg; none for an open loop. Default: pi, or pid for force-driven stages.",
         ),
     ] = None
     coordinates: Annotated[
@@ -74,19 +74,21 @@ class LoopOptions:
         ),
     ] = None
     bandwidth: Annotated[
-        str | None, text_option("--bandwidth", "VALUE", "Bandwidth of plain tuning. Default: the controller is optimised.")
+        str | None, text_option("--bandwidth", "VALUE", "Gain crossover for tuning without optimisation. Default: chosen by the tuning.")
     ] = None
     tune_for: Annotated[
         TuningObjective | None,
-        word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),
+        word_option("--tune-for", TuningObjective, "Objective of tuning by optimisation. Default: balance.", show_default=False),
     ] = None
-    quick: Annotated[bool, typer.Option("--quick", help="Tune for the highest bandwidth that Ms allows, without optimisation.")] = False
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Tune for the highest bandwidth that --max-sensitivity allows, without optimisation.")
+    ] = False
     max_sensitivity: Annotated[
         str | None, text_option("--max-sensitivity", "NUMBER", "Largest permitted peak sensitivity Ms of a tuned loop. Default: 2.")
     ] = None
     force_feedback: Annotated[
         str | None,
-        text_option("--force-feedback", "RATIO", "Damping ratio of modes by integral force feedback in the legs, e.g. 50%. Default: none."),
+        text_option("--force-feedback", "RATIO", "Damping ratio to reach by integral force feedback in the legs, e.g. 50%. Default: none."),
     ] = None
     tracking: Annotated[
         Following | None,
@@ -94,8 +96,10 @@ class LoopOptions:
             "--tracking", Following, "Tracking method for a known path; zv and zvd need a set-up file. Default: none.", show_default=False
         ),
     ] = None
-    rate: Annotated[str | None, rate_option("10 kHz, or 10 times the highest platform mode if higher")] = None
-    delay: Annotated[str | None, text_option("--delay", "VALUE", "Delay from sampling to the new output. Default: one sample.")] = None
+    rate: Annotated[str | None, rate_option("10 kHz; for fast stages, 10 times the highest platform frequency, rounded up")] = None
+    delay: Annotated[
+        str | None, text_option("--delay", "VALUE", "Delay from a sample to the new controller output. Default: one sample.")
+    ] = None
     trajectory: Annotated[
         str | None,
         text_option("--trajectory", "NAME|FILE", "Trajectory: step, raster, spiral, sine, or CSV file of times and poses. Default: step."),
@@ -108,7 +112,9 @@ class LoopOptions:
             "Amplitude of a step or sine, e.g. x=1um. Default: 1 um or 10 urad; for a sine, only along the first axis. Repeatable.",
         ),
     ] = None
-    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until settled.")] = None
+    seconds: Annotated[
+        float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: the trajectory and the settling after it.")
+    ] = None
     feedforward: Annotated[
         list[str] | None,
         text_option(
@@ -125,7 +131,11 @@ class LoopOptions:
     ] = None
     floor: Annotated[
         list[str] | None,
-        text_option("--floor", "[AXIS=]VALUE", 'Floor vibration: VC-D, z=VC-C or "x=3 um/s^2/Hz^0.5". Default: none. Repeatable.'),
+        text_option(
+            "--floor",
+            "[AXIS=]VALUE",
+            'Floor vibration as a criterion or amplitude density, e.g. VC-D, z=VC-C or "x=3 um/s^2/Hz^0.5". Default: none. Repeatable.',
+        ),
     ] = None
     gauge_noise: GaugeNoise = None
     resolution: GaugeResolution = None

@@ -33,12 +33,12 @@ _HALF = 0.5
 
 @dataclass(frozen=True, eq=False)
 class NoiseBudget(InNotebook):
-    """Noise budget: mean squares of outputs, at the samples. The contributions of the uncorrelated sources add up.
+    """Noise budget: mean squares of the outputs at the sampling instants. The contributions of the uncorrelated sources add up.
 
     `squares` (p, k) [unit^2] has a row for each of `outputs` and a column for each of `sources`. `density` (f, p, k) is the one-sided
-    density [unit^2/Hz] at `frequencies` (f,) [Hz]. The density due to floor vibration is at the frequency of the vibration, even above half
-    the sampling rate. The densities of white sources include aliasing, and are zero above half the sampling rate. `changes` (g,) are the
-    rms changes of the readings of `gauges` between samples, before rounding, in resolution steps (NaN: no rounding). `notes` list the
+    density [unit^2/Hz] at `frequencies` (f,) [Hz]. The density due to floor vibration belongs to the frequency of the vibration, even above
+    half the sampling rate. The densities of white sources include aliasing, and are zero above half the sampling rate. `changes` (g,) are
+    the rms changes of the readings of `gauges` between samples, before rounding, in resolution steps (NaN: no rounding). `notes` list the
     assumptions and missing data of each kind of source.
     """
 
@@ -83,12 +83,12 @@ class NoiseBudget(InNotebook):
 
     @property
     def output_names(self) -> Annotated[tuple[str, ...], Called("outputs")]:
-        """Names of the motions."""
+        """Names of the outputs."""
         return tuple(channel.name for channel in self.outputs)
 
     @property
     def units(self) -> Annotated[tuple[str, ...], Axes("output_names")]:
-        """Units of the motions; mean squares have the squares of these units."""
+        """Units of the outputs; mean squares have the squares of these units."""
         return tuple(channel.unit for channel in self.outputs)
 
     @property
@@ -106,15 +106,16 @@ class NoiseBudget(InNotebook):
 def noise_budget(
     closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float], outputs: tuple[str, ...] | None = None
 ) -> NoiseBudget:
-    """Compute the noise budget of a loop: mean squares of `outputs` by floor, gauges, converters and amplifiers.
+    """Compute the noise budget of a loop: mean squares of `outputs` due to floor, gauges, converters and amplifiers.
 
     The default outputs are the platform's six motions relative to the ground. `floor` maps ground motions (`ground.x`) to one-sided
-    densities. Gauss quadrature integrates floor vibration, noise of leg sensors and noise of amplifiers without lag over `band` (low, high)
-    [Hz]. All other sources are white: Lyapunov's equation gives their mean squares over all frequencies (`white_system`). The gauges sample
-    a ground motion e^{j omega t} as e^{j omega k T}, with the sampling period T. At the samples, the response to a ground motion w is y =
-    [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w. G_y and G_gap are the stage's responses at the outputs and at the gauges, and S_y
-    is the response of the sampled loop's outputs to gauge noise. Aliasing is exact, also above half the sampling rate. Raises `DesignError`
-    for an unstable loop, with its growth rate, and for a continuous loop.
+    densities. The densities of floor vibration, of leg sensors, and of amplifiers without lag are integrated by Gauss quadrature over
+    `band` (low, high) [Hz]. All other sources are white: Lyapunov's equation gives their mean squares over all frequencies
+    (`white_system`). The gauges sample a ground motion e^{j omega t} at the times k T, with the sampling period T and integers k. At these
+    times, a ground motion w causes the outputs y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w. G_y and G_gap are the stage's
+    responses at the outputs and at the gauges, and S_y is the response of the sampled loop's outputs to gauge noise. Aliasing of ground
+    motion above half the sampling rate is included exactly. Raises `DesignError` for an unstable loop (the message contains its growth
+    rate) and for a continuous loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_budget(integral_loop(), {"ground.x": Spectrum(1e-18)}, (0.1, 1000.0), ("relative.x",))
@@ -185,7 +186,7 @@ def _white_density(white: System, sources: tuple[Source, ...], frequencies: Arra
 
 
 def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
-    """Return, by plant input, the spectra that are integrated over a band: floor, amplifiers without lag, and leg sensors.
+    """Return the spectra that are integrated over a band, by name of the plant input: floor, amplifiers without lag, and leg sensors.
 
     >>> from flexstage.control.example import integral_loop
     >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))
@@ -245,10 +246,10 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     silent = [name for name, sensor in sensors.items() if sensor.noise_density is None]
     bare = [name for name, sensor in sensors.items() if sensor.noise_density and np.isinf(sensor.bandwidth) and not sensor.filter_order]
     if silent:
-        yield f"no specified noise for {', '.join(silent)}: counted as zero"
+        yield f"the noise of {', '.join(silent)} is not specified: counted as zero"
     if bare:
         end = f"half the sampling rate, {0.5 / (closed.step or np.nan):g} Hz"
-        yield f"{', '.join(bare)}: no specified bandwidth or filter; noise is limited to {end}"
+        yield f"bandwidth and filter of {', '.join(bare)} are not specified: noise is limited to {end}"
     if len(bare) < len(sensors) - len(silent):
         yield "gauge noise is assumed white before lag and filter; aliasing of its part above half the sampling rate is computed exactly"
     if budget.slowly_rounding:
@@ -265,7 +266,7 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         )
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
     if quiet:
-        yield f"no specified amplifier noise for {', '.join(quiet)}: counted as zero"
+        yield f"the amplifier noise of {', '.join(quiet)} is not specified: counted as zero"
     unbounded = list(band_spectra(closed, {}, outputs))
     heard = [name for name in unbounded if name.startswith(f"{SENSED}.")]
     only = f"integrated from {budget.band[0]:g} to {budget.band[1]:g} Hz only"

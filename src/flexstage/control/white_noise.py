@@ -61,10 +61,10 @@ def mean_squares(system: System) -> Array:
 
 
 def held_noise(A: Array, B: Array, step: float) -> Array:
-    """Compute a factor L (n, k) of the covariance Q = L L^T of the states (n,) that white noise (density 1) causes in a step of length T.
+    """Compute a factor L (n, k) of the state covariance Q = L L^T that white noise of density 1 causes within a step of length T.
 
-    For a system with the matrices A and B, Q(T) = int_0^T e^{As} B B^T e^{A^T s} ds. A Taylor series gives Q for a small fraction of the
-    step. The fraction is then doubled repeatedly, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}, without growing exponentials.
+    For a system with the matrices A and B, Q(T) = int_0^T e^{As} B B^T e^{A^T s} ds. A Taylor series gives Q(t) for a small fraction t of
+    the step. The fraction t is then doubled repeatedly: Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}. For a stable system, no exponential grows.
 
     >>> factor = held_noise(-np.eye(1), np.eye(1), 0.5)
     >>> round(float(factor[0, 0] ** 2), 12), round(float(0.5 * (1.0 - np.exp(-1.0))), 12)
@@ -90,7 +90,7 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
 def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     """Return the closed loop driven by unit white inputs, and the source of each input.
 
-    Gauge noise is white before lag and filter; the noise after them is sampled exactly, with aliasing. For a gauge without lag and filter,
+    Gauge noise is white before lag and filter; the filtered noise is sampled exactly, with aliasing. For a gauge without lag and filter,
     the noise is assumed to end at half the sampling rate. Rounding noise is white with variance step^2/12. Amplifier noise also drives the
     stage between the samples; noise of an amplifier without lag is omitted here.
 

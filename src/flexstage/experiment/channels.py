@@ -32,10 +32,10 @@ Score = Callable[[Array], float]
 
 @dataclass(frozen=True, eq=False)
 class Residues:
-    """Modal gains of the model (`theory`) and of the test (`measured`) in the same units, by group of modes, output and input.
+    """Modal gains (groups of modes, outputs, inputs) of the model (`theory`) and of the test (`measured`), in the same units.
 
-    `inputs_known` (m,) marks inputs whose units can be converted. `direct` (m,) marks inputs recorded as the actuator's own quantity or as
-    a force. A recorded voltage is not direct, because the gain of the amplifier after it may be unknown.
+    `inputs_known` (m,) marks the inputs with units that can be converted to the model's units. `direct` (m,) marks the known inputs that
+    are not voltages. The model's gain for a voltage is uncertain, because the gain of the amplifier may be unknown.
     """
 
     outputs: tuple[str, ...]
@@ -145,9 +145,9 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Suspec
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
-    """Estimate the scale (p,) of every output: `measured` modal amplitudes (p, groups of modes) divided by the model's, `theory`.
+    """Estimate the scale (p,) of every output: its `measured` amplitudes (p, groups of modes) divided by the model's amplitudes `theory`.
 
-    The median of the scales is 1. The amplitudes of each group of modes may have another scale, which does not affect the result.
+    The median of the scales is 1. A common factor of all amplitudes in a group of modes does not affect the result.
 
     >>> theory = np.array([[1.0, 2.0, 1.0], [3.0, 1.0, 2.0], [1.0, 1.0, 3.0]])
     >>> output_scales(theory, theory * [[1.0], [1.0], [1000.0]] / [1.0, 2.0, 7.0]).round(3).tolist()
@@ -266,9 +266,9 @@ def _nearest_median(ratios: Array) -> float:
 
 
 def normalise(residues: Residues) -> Residues:
-    """In each group, divide the gains of model and test by the norm of the model's gains, so that all modes have equal weight.
+    """In each group of modes, divide the gains of model and test by the norm of the model's gains, so that all groups have equal weight.
 
-    Groups whose gains in the model are only rounding errors have no weight.
+    If the model's gains in a group are only rounding errors, all gains of the group become zero.
 
     >>> theory, measured = np.array([[[2.0]], [[0.0]]]), np.array([[[2.2]], [[1.0]]])
     >>> normalise(Residues(("S",), ("B",), theory, measured, *np.ones((2, 1), dtype=bool))).measured.ravel().tolist()

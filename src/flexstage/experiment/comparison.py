@@ -71,7 +71,7 @@ class ComparedMode:
 
     `number` counts the platform's modes from 1. `assurance` is the modal assurance criterion (MAC) of model and test at the sensors. For
     repeated modes, `assurance` is the fraction of the measured shape within the model's subspace. `fea_assurance` is the MAC of model and
-    finite elements for all motions that both have. If `fea_assurance` is below 0.8, `fea` is absent.
+    finite elements for all motions that exist in the model and in the finite elements. If `fea_assurance` is below 0.8, `fea` is absent.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -133,13 +133,13 @@ class RepeatedModes:
 
 @dataclass(frozen=True)
 class FurtherMode:
-    """Measured mode that is not a platform mode, with the frequency [Hz] of the local mode of the model that matches it, if any."""
+    """Measured mode that is not a platform mode; if a local mode of the model matches, also this local mode's name and frequency [Hz]."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Further measured modes",
         "experiment.number experiment.frequency experiment.frequency_interval experiment.widening experiment.damping name theory assurance",
         notes=(
-            "Modes of single units, of the ground or of the support. Pairing local modes by motions at sensors alone is less reliable.",
+            "Modes of single units, of the ground or of the support. Pairs of local modes are less reliable: they use only the sensors.",
         ),
     )
 
@@ -175,7 +175,7 @@ class Compared(InNotebook):
         theory = f"Theory: {self.model.value} model."
         if self.fea is None:
             return (theory,)
-        error = "error estimated from a lower order" if self.fea.errors else "error not estimated: no coarser result"
+        error = "error estimated from a lower order" if self.fea.errors else "error not estimated, because there is no coarser result"
         return theory, f"FEA: elements of order {self.fea.order}, {error}."
 
     @property
@@ -191,11 +191,12 @@ def compare(
     """Compare the platform's modes in the model, in finite elements (optional) and in the test.
 
     Shapes are compared at the outputs common to record and stage by the modal assurance criterion (MAC, Allemang & Brown 1982). For
-    measured shapes, the real part is used. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to
-    modes of the model so that the sum of the MACs of all pairs is largest. Frequency differences have a small weight, which decides between
-    shapes that the sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5.
-    Measured modes may also be paired with local modes of the model. If `loaded` is true and the permanent load is significant, the model
-    describes the loaded stage (see `load_effect`). Raises `DesignError` without a common output.
+    measured shapes, the real part is used. Modes of the model with frequencies within 1 % of each other are compared as one subspace.
+    Measured modes are assigned to modes of the model so that the sum of the MACs of all pairs is largest. Frequency differences have a
+    small weight, which decides between shapes that the sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6;
+    the MAC of a pair is at least 0.5. Measured modes may also be paired with local modes of the model. If `loaded` is true and the
+    permanent load is significant, the model describes the loaded stage (see `load_effect`). Raises `DesignError` if record and stage have
+    no output in common.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record
@@ -330,7 +331,7 @@ def _sizes(shapes: Array, groups: list[list[int]]) -> Array:
 
 def _sort_within_groups(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
     """Within a subspace the lower measured frequency belongs to the lower mode."""
-    ordered: dict[int, int] = {}
+    ordered = dict[int, int]()
     for group in groups:
         members = sorted(found[index] for index in group if index in found)
         ordered |= dict(zip(group, members, strict=False))
@@ -446,7 +447,7 @@ def _repeated_modes(group: list[int], pairs: dict[int, int], own: Array, seen: A
 
 
 def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> list[str]:
-    found: list[str] = []
+    found = list[str]()
     if len(sensors) < len(rows):
         found.append(
             f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}) for {len(rows)} modes: some modes may look the same."
@@ -468,7 +469,7 @@ def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
             )
         if group.angle is not None and group.angle > _TURNED:
             angle = f"{np.rad2deg(group.angle):.0f}"
-            found.append(f"modes {names} are repeated; their measured shapes deviate by up to {angle} degrees from the subspace of theory.")
+            found.append(f"modes {names} are repeated; their measured shapes deviate by up to {angle} degrees from those of theory.")
     lost = [row for row in rows if row.experiment is None]
     if lost:
         found.append(f"modes not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")

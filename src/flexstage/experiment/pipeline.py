@@ -34,9 +34,10 @@ _DEFAULT = Search()
 class Identification:
     """Identification of a test: its data, modes and spectra.
 
-    `multiple` (f, p) is the multiple coherence. `second` is H2, absent with fewer outputs than inputs. `ratio` is T_ij = G_ij/G_ii: the
-    cross spectrum of input i and output j, divided by the spectrum of input i (Shin & Moon, equation 29). For an analyser's responses, and
-    without recorded inputs, `multiple`, `second` and `ratio` are absent. `found.responses` contains H1 and the ordinary coherence.
+    `multiple` (f, p) is the multiple coherence. `second` contains the H2 estimate of the responses; it is absent if there are fewer outputs
+    than inputs. `ratio` is T_ij = G_ij/G_ii: the cross spectrum of input i and output j, divided by the spectrum of input i (Shin & Moon,
+    equation 29). For an analyser's responses, and without recorded inputs, `multiple`, `second` and `ratio` are absent. `found.responses`
+    contains H1 and the ordinary coherence.
     """
 
     test: Annotated[Measurement, INNER]

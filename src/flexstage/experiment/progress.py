@@ -1,4 +1,4 @@
-"""Progress of a computation: callback for the progress, and the current part of the computation."""
+"""Progress of a computation, reported to a callback function as a completed fraction."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def followed(told: ProgressCallback) -> Generator[None]:
 
 @contextmanager
 def part(start: float, stop: float, text: str = "") -> Generator[None]:
-    """Report the progress of the `with` block as `start` to `stop` (0 to 1) of the total progress; `text` describes the block."""
+    """Report the progress 0 to 1 of the `with` block as `start` to `stop` of the enclosing block; `text` describes the block."""
     outer = _FOLLOWER.get()
     with followed(lambda own, share: outer(text or own, start + share * (stop - start))):
         yield
 
 
 def report(share: float, text: str = "") -> None:
-    """Report the completed fraction of the current part, 0 to 1; `text` describes the part if it has no description."""
+    """Report the completed fraction of the current part, 0 to 1; `text` is used if the part has no description of its own."""
     _FOLLOWER.get()(text, share)

@@ -1,4 +1,4 @@
-"""Options of commands that read test records; opening and identification of the records."""
+"""Options of commands that read test records; functions that open the records and identify modes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ Inputs: TypeAlias = Annotated[
     text_option(
         "--inputs",
         "NAMES",
-        'Input channels, e.g. "u*" or B1,B2. Default: from the roles in the file, otherwise from the channel names. Repeatable.',
+        'Input channels, e.g. "u*" or B1,B2. Default: the channels that the file marks as inputs; for unmarked channels, names such as u1 '
+        "decide. Repeatable.",
     ),
 ]
 Outputs: TypeAlias = Annotated[
@@ -49,7 +50,8 @@ Outputs: TypeAlias = Annotated[
     text_option(
         "--outputs",
         "NAMES",
-        'Output channels, e.g. "S?". Default: from the roles in the file, otherwise from the channel names. Repeatable.',
+        'Output channels, e.g. "S?". Default: the channels that the file marks as outputs; for unmarked channels, names such as S1 decide. '
+        "Repeatable.",
     ),
 ]
 Channels: TypeAlias = Annotated[
@@ -66,7 +68,9 @@ Arrays: TypeAlias = Annotated[
         "Further meanings: rate, step, names, units, frequencies, responses, coherence. Repeatable.",
     ),
 ]
-Kind: TypeAlias = Annotated[str | None, text_option("--kind", "<record|responses>", "Kind of data to read, if a file contains both.")]
+Kind: TypeAlias = Annotated[
+    str | None, text_option("--kind", "<record|responses>", "Kind of data to read from a file that contains both a record and responses.")
+]
 AcceptFault: TypeAlias = Annotated[
     list[str] | None,
     text_option(
@@ -88,14 +92,16 @@ Moved: TypeAlias = Annotated[
 FrequencyResolution: TypeAlias = Annotated[
     str | None,
     text_option(
-        "--frequency-resolution", "FREQUENCY", 'Frequency resolution of the spectra, e.g. "0.5 Hz". Default: from the length of the record.'
+        "--frequency-resolution",
+        "FREQUENCY",
+        'Frequency resolution of the spectra, e.g. "0.5 Hz". Default: chosen according to the length of the record.',
     ),
 ]
 
 
 @dataclass(frozen=True)
 class RecordTexts:
-    """Record options as command-line strings; commands without the option `excitation` leave it empty."""
+    """Record options as command-line strings; the field `excitation` is empty for commands without this option."""
 
     inputs: Inputs = None
     outputs: Outputs = None
@@ -137,7 +143,7 @@ class RecordTexts:
         """Return the search parameters of the identification."""
         band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
         if self.band is not None and band is not None and band[0] >= band[1]:
-            raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Use a low frequency and a higher one")
+            raise refuse("--band", f"invalid band (got {self.band[0]} to {self.band[1]})", "Use a low frequency, then a higher frequency")
         lines = self._resolution()
         moved = self.excitation or Excitation.RECORDED
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
@@ -167,7 +173,7 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """Identify the modes of records and print each warning. Records must suit the `model` and the `highest` mode [Hz], if known."""
+    """Identify the modes of records and print each warning; check the records against the `model` and its `highest` mode [Hz], if known."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown, followed(shown.share):
         seen = identification(usable_measurement(open_records(paths, reader), reader.accept_faults, needs), search)
@@ -204,7 +210,9 @@ def _arrays(texts: Sequence[str] | None, findings: list[Finding]) -> options.Arr
     for text in texts or ():
         meaning, _, listed = text.partition("=")
         if meaning.strip() not in known or not names([listed]):
-            findings.append(Finding(f"--array {text}", f"unknown meaning or no array (known: {', '.join(known)})", "Use e.g. samples=u,y"))
+            findings.append(
+                Finding(f"--array {text}", f"unknown meaning, or array missing (known: {', '.join(known)})", "Use e.g. samples=u,y")
+            )
         else:
             stated[meaning.strip()] = stated.get(meaning.strip(), ()) + names([listed])
     return options.Arrays(**stated)
@@ -221,5 +229,5 @@ def _word(option: str, word: str, kind: type[Enum], findings: list[Finding]) -> 
 def _hertz(option: str, text: str) -> float:
     value = parse(text, FREQUENCY, where=option)
     if value < 0.0 or (value == 0.0 and option != "--band"):
-        raise refuse(option, f"no frequency above zero (got {text})", 'Use e.g. "2 kHz"')
+        raise refuse(option, f"not a frequency above zero (got {text})", 'Use e.g. "2 kHz"')
     return value

@@ -1,4 +1,4 @@
-"""Measured shapes as motions of the stage's bodies, from outputs with the names of the stage's gauges and motions."""
+"""Motions of the stage's bodies in the measured modes, from outputs that have the names of gauges or motions of the stage."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _RANK = 1e-6
 class StageShapes:
     """Measured shapes as motions of the stage.
 
-    `motions` maps each body to its twists (6, k) [m, rad] in the modes. `used` names the outputs used. `explained` (k,) is the fraction of
-    each measured shape that ideal motion explains. `explained` is 1 if there are no more outputs than degrees of freedom. `missing` is the
-    reason why there are no twists.
+    `motions` maps each body's name to the body's twists (6, k) [m, rad] in the k modes. `used` lists the outputs from which the motions are
+    computed. `explained` (k,) is the fraction of each measured shape that ideal motion explains. `explained` is 1 if there are no more
+    outputs than degrees of freedom. If the shapes cannot be mapped to the stage, `missing` is the reason.
     """
 
     motions: Mapping[str, Array]
@@ -47,9 +47,9 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     """Fit ideal stage motions to the measured shapes s by least squares: the platform twists are x = V (R V)^+ s.
 
     The columns of V are the ideal motions, and (R V)^+ is the pseudo-inverse. Each row of R maps the platform twist to an output: to a
-    gauge's reading (a row of the matrix R_s) or to a component of a body's twist. Rotations are weighted by the kinematics' characteristic
-    length. For six gauges the result equals R_s^-1 s (Eq. 14 of Shin & Moon). All bodies move with the ideal kinematics: hinges are free
-    about their intended axes.
+    gauge's reading (a row of the matrix R_s) or to a component of a body's twist. Rotations are multiplied by the characteristic length of
+    the kinematics. For six gauges the result equals R_s^-1 s (Eq. 14 of Shin & Moon). All bodies move with the ideal kinematics: hinges are
+    free about their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -77,7 +77,7 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
 
 
 def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
-    """Convert the real shapes (p, k) of all or the named outputs to SI units, because outputs may have different units such as um and mm.
+    """Convert the real shapes (p, k) to SI units, for all outputs or for the outputs `names`; outputs may have different units.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

@@ -55,7 +55,7 @@ def _empty(metadata: Mapping[str, Any] | None = None) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class NamedNumber(Description):
-    """Number with a name for use in formulas: its value [SI] and its unit in files (`1`: a ratio)."""
+    """Number with a name for use in formulas: its value in SI units, and its unit in design files (`1` for a ratio)."""
 
     value: Annotated[Number, ANY]
     unit: str
@@ -65,10 +65,11 @@ class NamedNumber(Description):
 class Link(Description):
     """Elastic connection (a part) between two bodies, or between as many bodies as the part has ports.
 
-    `joins` names the bodies; the relative twist is the motion of the second body relative to the first. `part` names an entry of the
-    mechanism's parts. The link frame has its origin at the part's centre `at`, and x along `along` (first to second body). The z axis is
-    along `bends`, the axis of compliant rotation; `bends` is required for parts that are not axisymmetric. `free` overrides the ideal
-    degrees of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start` at the first body, `end` at the second.
+    `joins` names the bodies; the relative twist of the link is the motion of the second body relative to the first body. `part` names an
+    entry of the mechanism's parts. The link frame has its origin at the part's centre `at`. Its x axis points along `along`, from the first
+    to the second body; its z axis points along `bends`, the axis of compliant rotation. `bends` is required for parts that are not
+    axisymmetric. `free` overrides the ideal degrees of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start`
+    at the first body, and `end` at the second body.
 
     A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame of a part with
     ports has the part's axes. With two ports, `free` lists the degrees of freedom of the second port's body relative to the first port's
@@ -93,7 +94,7 @@ class Link(Description):
 
     @property
     def direction(self) -> Vector:
-        """Direction of the part's x axis: `along`, or from end to end."""
+        """Direction of the part's x axis: `along`, or from `start` to `end`."""
         return between(self.start, self.end) if self.along is None and self.start and self.end else self.along or ORIGIN
 
     @property
@@ -146,10 +147,10 @@ class Probe(Description):
 
 @dataclass(frozen=True, eq=False)
 class LinkProbe(Description):
-    """Gauge on a link of the expanded stage (`B1/pzt`), for its deformation along or about the link's x axis.
+    """Gauge on a link (`B1/pzt`: the link `pzt` of the instance `B1`) that measures the deformation along or about the link's x axis.
 
-    The gauge measures the motion of the second body relative to the first; elongation is positive. `B1-B3/pzt` names the links of three
-    gauges.
+    The gauge measures the motion of the second body relative to the first; elongation is positive. With the link names `B1-B3/pzt`, three
+    gauges are defined: on the links `B1/pzt`, `B2/pzt` and `B3/pzt`.
     """
 
     gauge: str
@@ -158,10 +159,10 @@ class LinkProbe(Description):
 
 @dataclass(frozen=True, eq=False)
 class GaugeSum(Description):
-    """Weighted sum of other gauges of one quantity, by name: `{S1 = 0.5, S2 = -0.5}`.
+    """Weighted sum of gauges that measure the same quantity: `sum` has the weight of each gauge, e.g. `{S1 = 0.5, S2 = -0.5}`.
 
-    The sum replaces its members: the platform's pose is computed from sums and from gauges that are not in a sum. Noise, steps and range
-    are specified for the members.
+    The sum replaces its members: the platform's pose is computed from sums and from gauges that are not in a sum. Noise, resolution and
+    range are specified for the members.
     """
 
     sum: Mapping[str, Annotated[Number, RATIO]]
@@ -197,7 +198,7 @@ class Force(Description):
 class StrokePath(Description):
     """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack or a load) varies between the two values of `to`.
 
-    The values of `to` are strings with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold`
+    The values of `to` are strings with units, relative to the static equilibrium. `points` is the number of equilibria. `hold`
     specifies the constant conditions, for example:
 
     - `{"platform.x": "-20 N"}`: a permanent load along a coordinate;
@@ -245,16 +246,17 @@ class Aperture(Description):
 class Mechanism(InNotebook, Description):
     """Description of a stage, for all models.
 
-    The stage is a graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with
-    `gauges`. The body `ground` exists implicitly; the stage positions the body `platform`. `overrides` replace values of the shared part
-    for single links, by address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed
-    modes.
+    The stage is a graph of rigid `bodies` and elastic `links`, with `gauges`. Bodies and links are defined directly, or in `units` that
+    `placements` repeat in patterns. The body `ground` exists implicitly; the stage positions the body `platform`. Several links can share a
+    part; `overrides` replace values of the part for single links, by address (`horizontal/front.thickness`, `B2/front.thickness`).
+    `max_mode_frequency` is the frequency limit of listed modes.
 
     `stops` limit strokes; `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no
     expansion). `temperatures` are temperature changes since manufacture, by body (including `ground`); the entry `all` is for all other
-    bodies. The temperature of a part is the mean of its bodies. `packages` lists required packages that provide kinds of parts, gauges and
-    measures, with optional versions: `tapered-leaf >= 1`. With `elastic_bodies`, the lumped model includes the flexibility of bodies,
-    estimated from their outlines. `formulas`, by address, compute values from `numbers`; the description stores the computed values.
+    bodies. The temperature of a part is the mean temperature of the bodies that it joins. `packages` lists required packages that provide
+    kinds of parts, gauges and measures, with optional versions: `tapered-leaf >= 1`. With `elastic_bodies`, the lumped model includes the
+    flexibility of bodies, estimated from their outlines. `formulas` compute the values at their addresses from `numbers`; the description
+    stores the computed values.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a description", "stage")

@@ -51,7 +51,7 @@ def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
 def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str]) -> Any:
     """Return a value in which each string of the fields `names` is replaced by `change(field, string)`.
 
-    A value without such fields is returned unchanged.
+    A value without these fields is returned unchanged.
 
     >>> from flexstage.mechanism.mechanism import Link
     >>> renamed(Link(("ground", "platform"), "leaf"), BODIES, lambda field, name: f"fine/{name}").joins

@@ -20,7 +20,7 @@ Freedoms = tuple[Freedom, ...]
 
 
 def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> Mechanism:
-    """Restrict parts, by name or link address (`vertical/lower`), to their elastic and free degrees of freedom; all others are locked.
+    """Restrict parts, by name or link address (`vertical/lower`), to the elastic and free degrees of freedom in `kept`; lock all others.
 
     Restricted parts are massless. Raises `DesignError` for a name that is not a part or a link.
 
@@ -60,8 +60,8 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
 def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
     """Isolate one unit in its own frame, with a massless platform at its output; `guide` constrains the output to a direction.
 
-    The reference point of the output is the joint with the platform. Values that the placement changes in the unit are kept. Other units,
-    and outlines that belong to bodies of the stage (lugs of the platform), are omitted.
+    The reference point of the output is the joint with the platform. Overrides of the instance and of its unit are kept. Other units, and
+    outlines that belong to bodies of the stage (lugs of the platform), are omitted.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(isolate(double_triangle(), "B4").units)

@@ -1,8 +1,8 @@
 """Finite motion of the ideal model: inverse kinematics (pose to strokes) and forward kinematics (strokes to pose) on SE(3).
 
-The unknowns are the poses of all bodies. The locked components of the relative pose of every link are zero; for an actuator, they equal its
-free deformation times its stroke. Force actuators do not constrain motion. Any topology is supported, including closed loops. Free internal
-modes are determined by steps of least norm. Redundant constraints are satisfied by least squares.
+The unknowns are the poses of all bodies. The locked components of the relative pose of every link are zero. For an actuator, the locked
+components equal its free deformation times its stroke. Force actuators do not constrain motion. Any topology is supported, including closed
+loops. Free internal modes are determined by steps of least norm. Redundant constraints are satisfied by least squares.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class FiniteMotion:
 
     @property
     def consistent(self) -> Array:
-        """Whether redundant constraints are compatible with this finite motion; if not, the links are strained by about `residual`."""
+        """Whether redundant constraints permit this finite motion; if not, the motion strains the links by about `residual`."""
         return self.residual <= _CONSISTENT * self.length
 
 
@@ -151,7 +151,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
 
 @check_arguments
 def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
-    """Compute the strokes that move the platform's reference point to `pose`, in the components named in `kinematics.coordinates`.
+    """Compute the strokes for which the platform has the components of `pose` that `kinematics.coordinates` names.
 
     The method, the model of the links and the possible errors are those of `forward_kinematics`.
 
@@ -168,7 +168,7 @@ def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: Finit
 
 
 def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...]:
-    """Return the batch shape of the designs, with which the leading axes of strokes and poses must be broadcastable.
+    """Return the batch shape of the designs; the leading axes of strokes and poses must be broadcastable to this shape.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -215,7 +215,7 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
         before = size
     raise refuse(
         "finite motion",
-        f"no convergence: the last step was {size:.3g} times the stage's size, {np.max(links.length):.3g} m",
+        f"no convergence: the last step was {size:.3g} times the stage's size of {np.max(links.length):.3g} m",
         "The links cannot be connected in this pose; use smaller strokes or poses",
     )
 

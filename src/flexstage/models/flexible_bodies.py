@@ -5,8 +5,8 @@ Each outline has a rectangular grid of quadratic hexahedra with 20 nodes. Points
 their cells.
 
 Loads are wrenches at the ends of the links on a body, balanced by the inertia of the accelerated body (inertia relief). The results are the
-twists of these ends relative to the body's mean motion. A linear model then has rigid bodies, with a compliance between each body and the
-ends of its links.
+twists of these ends relative to the body's mean motion. In a linear model, each body is then rigid, with a compliance between the body and
+the ends of its links.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ _SAMPLES: Array = np.array(
 
 @dataclass(frozen=True, eq=False)
 class BodyFlexibility:
-    """Compliance (6 k, 6 k) [SI] of a body at the ends of its k `links`.
+    """Compliance (6 k, 6 k) [SI] of a body between the ends of its k `links`.
 
     The coordinates are the twists of these ends relative to the mean motion of the body, at the points `ends` (k, 3), in the stage's axes.
     Bodies with equal outlines and links belong to one `group`.
@@ -97,8 +97,8 @@ class BodyEstimates:
 def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """Estimate the flexibility of every body of one design from its outlines.
 
-    A body without outlines, or with an imported outline or many outlines, has no estimate. There is also no estimate for a body that joins
-    a superelement, an ideal joint or a part with locked DOFs, or if a link ends far from the outlines. In a stage with many bodies, no body
+    A body has no estimate if it has no outlines, an imported outline or many outlines. A body also has no estimate if it joins a
+    superelement, an ideal joint or a part with locked DOFs, or if a link ends far from its outlines. In a stage with many bodies, no body
     has an estimate. The result contains the reason for each missing estimate.
 
     Equal bodies share their estimate.
@@ -162,7 +162,7 @@ def _links(flexibilities: Sequence[BodyFlexibility]) -> tuple[str, ...]:
 def with_flexible_bodies(model: LinearModel, mechanism: Mechanism, flexibilities: Sequence[BodyFlexibility]) -> LinearModel:
     """Return the lumped model with bodies that deform elastically between the ends of their links.
 
-    Masses, gauges, points, and links without length (coils, springs) follow the mean motion of each body.
+    Masses, gauges, points, and links without length (coils, springs) follow the mean motion of their body.
 
     The link strains are e = G q - s, with the coordinates q and the imposed strokes s. The link stiffness is k, the compliance of the
     bodies is C, and E are the link strains per unit twist of the link ends. The twists of the ends are eliminated: the link forces are (k -

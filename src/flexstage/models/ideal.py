@@ -1,8 +1,9 @@
 """Ideal model: rigid bodies; hinges are free in their intended DOFs and locked in all others; superelements are rigid.
 
-The unknowns are the twists of all bodies and the strokes. The deformations of every link in locked DOFs are zero; for an actuator, they
-equal its free deformation times its stroke. The remaining motions give R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the
-platform mobility, free internal modes and redundant constraints.
+The unknowns are the twists of all bodies and the strokes. The deformations of every link in locked DOFs are zero. For an actuator, the
+locked deformations equal its free deformation times its stroke. The remaining motions give R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of
+Shin & Moon) for strokes a, gauge readings s and platform motion x. They also give the platform mobility, free internal modes and redundant
+constraints.
 
 Force actuators do not constrain motion. Their generalised forces on the ideal motions are computed by virtual work.
 """
@@ -60,7 +61,7 @@ class _Graph:
 
 
 def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
-    """Return the free DOFs of a link: as specified at the link, else the intended DOFs of the part.
+    """Return the free DOFs of a link: the DOFs specified at the link or, if none are specified, the intended DOFs of the part.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [freedom.value for freedom in free_freedoms(expand(double_triangle()).links["B4/pivot"])]
@@ -417,7 +418,7 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
                 yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
             except DesignError as error:
                 reason = "; ".join(finding.what for finding in error.findings)
-                what = f"affected by a free internal mode that strains {name}, whose stiffness is unknown: {reason}"
+                what = f"affected by a free internal mode that strains {name}, and the stiffness of {name} is unknown: {reason}"
                 raise refuse(", ".join(watching), what, "Specify the stiffness, or move the gauge to the platform") from error
 
 

@@ -68,7 +68,7 @@ _Value = TypeVar("_Value")
 
 
 class Masses(Enum):
-    """Masses in the model: all bodies and links, or only the platform with its payloads (Shin & Moon)."""
+    """Masses in the model: masses of all bodies and links, or only the mass of the platform with its payloads (Shin & Moon)."""
 
     ALL = "all"
     PLATFORM = "platform"
@@ -107,12 +107,13 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     The model is valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
 
     - Locked DOFs of `Restricted` and `Joint` parts are eliminated exactly. A stroke along a locked axis is an imposed motion.
-    - Free internal modes without effect on the platform are removed and listed in `idle`; their inertia is included.
-    - With `elastic_bodies`, bodies have the compliance that `body_flexibilities` estimates; only for single designs.
+    - Free internal modes without effect on the platform are removed from the coordinates and listed in `idle`; their inertia is still
+      included.
+    - With `elastic_bodies`, bodies have the compliance that `body_flexibilities` estimates. This option is limited to single designs.
 
-    Raises `DesignError` for a mechanism (K is singular), with the names of its free bodies, and for a stroke that locked DOFs block. The
-    error is also raised if negative stiffnesses make the nominal position unstable. If only later designs of a batch are unstable, their
-    stiffness is NaN.
+    Raises `DesignError` if bodies can move freely (K is singular), with the names of these bodies, and if locked DOFs block a stroke. The
+    function also raises this error if negative stiffnesses make the nominal position unstable. If the first design of a batch is stable,
+    the stiffness of unstable designs is NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
@@ -124,7 +125,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def variants(
     mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
 ) -> Iterator[LinearModel]:
-    """Build one model for each mapping in `kept`, from the names of restricted parts to their new DOFs (elastic, free).
+    """Build one model for each mapping in `kept`; a mapping contains the new DOFs (elastic, free) of restricted parts by part name.
 
     The stage is expanded only once. Raises `DesignError` as `lumped` does.
 
@@ -411,7 +412,7 @@ def _driven_motions(stage: _Stage, inertia: Mapping[str, Contribution], basis: A
     if np.linalg.matrix_rank(moved, tol=_APART) < loose.shape[1] or np.linalg.cond(np.real(first_design(mass, 2))) > 1.0 / _MASSLESS:
         return None
     if max(mass.ndim, full.ndim, thrusts.ndim, laws) > 2 or np.iscomplexobj(mass) or np.iscomplexobj(full):
-        what = "forces drive a motion without stiffness; a batch of designs does not support this"
+        what = "forces drive a motion without stiffness, which is not supported for a batch of designs"
         raise refuse("stage", what, "Analyse the designs one by one, or add a spring")
     return loose @ np.linalg.inv(np.linalg.cholesky(mass)).T
 
@@ -435,8 +436,8 @@ def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: 
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
         blocking = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
         if blocking:
-            what = f"the stroke of actuator {name} is blocked: no elastic DOF between its locked axis and {', '.join(blocking[:6])}"
-            yield Finding(link, what, "Free one of these DOFs, or give it a stiffness")
+            what = f"the stroke of actuator {name} is blocked: no DOF is elastic between its locked axis and {', '.join(blocking[:6])}"
+            yield Finding(link, what, "Free one of these DOFs, or specify a stiffness for one of them")
 
 
 def _idle(
@@ -478,7 +479,7 @@ def _inertial_modes_of_batch(mass: Array, largest: Array) -> tuple[int, ...]:
     first, *others = map(_inertial_modes, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
     for number, heavy in enumerate(others, 1):
         if heavy != first:
-            raise unlike(number, "differs from the first design in which free internal modes have inertia")
+            raise unlike(number, "differs from the first design in the free internal modes that have inertia")
     return first
 
 

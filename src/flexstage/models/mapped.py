@@ -77,8 +77,8 @@ class LeverStiffness:
 def mapped(mechanism: Mechanism) -> LinearModel:
     """Build the model of Shin & Moon: axial springs in actuator coordinates under a rigid platform.
 
-    The stiffness of each unit is specified in the description, or computed by `unit_stiffness`. Raises `DesignError` if a stiffness is
-    neither specified nor computable; the error names the key that specifies this stiffness.
+    The stiffness of each unit is specified in the description, or computed by `unit_stiffness`. Raises `DesignError` if a stiffness is not
+    specified and cannot be computed. The error names the key for specifying this stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> (mapped(double_triangle()).stiffness_matrix[0, 0] / 1e6).round(2).item()  # 1.5 K_a
@@ -143,9 +143,9 @@ def _broadcast(*arrays: Array) -> list[Array]:
 
 
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
-    """Return the stiffness of every actuator's unit in actuator coordinates [N/m], specified or computed.
+    """Return the specified or computed stiffness of every actuator's unit in actuator coordinates [N/m].
 
-    For a unit that is not a straight strut or a lever, the stiffness is computed for the chain of links that carry its load
+    If a unit is neither a straight strut nor a lever, the stiffness is computed for the chain of links that carry the unit's load
     (`chain_compliance`). The chain must be statically determinate, and `kinematics` is required.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -282,7 +282,7 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
     30.28
     """
     if np.any(np.real(actuator_of(assembly.links[drive].part).free_deformation)[..., 1:]):
-        raise refuse(drive, "its stroke is not only along its axis, but this model has springs only along the axis", "")
+        raise refuse(drive, "the actuator's stroke is not only along its axis, but this model has springs only along the axis", "")
     ways = _links_at_bodies(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     if levers:
@@ -290,7 +290,7 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
     chain = _chain(ways, assembly, drive, frozenset({GROUND, PLATFORM}))
     ends = _ends(chain)
     if sorted(ends) != sorted((GROUND, PLATFORM)):
-        raise refuse(drive, f"its strut ends at {' and '.join(ends)}, not at ground and platform", "")
+        raise refuse(drive, f"the actuator's strut ends at {' and '.join(ends)}, not at ground and platform", "")
     return 1.0 / _series(chain, assembly.links[drive])
 
 
@@ -313,7 +313,7 @@ def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
     pivots = [link for link in others if GROUND in link.joins]
     poles = [link for link in others if GROUND not in link.joins]
     if len(pivots) != 1 or len(poles) != 1:
-        raise refuse(drive, f"its lever has {len(pivots)} pivots to ground and {len(poles)} output poles, expected one each", "")
+        raise refuse(drive, f"its lever has {len(pivots)} pivots to ground and {len(poles)} output poles, expected one of each", "")
     pole = _chain(ways, assembly, poles[0].name, stop)
     pivot = pivots[0]
     turning = 1.0 / _compliance(pivot)[..., 5, 5]
@@ -376,7 +376,7 @@ def _compliance(link: PlacedLink) -> Array:
     """Compliance of a link's part; for a restricted part only of its elastic DOFs, as freed ones have no stiffness."""
     part = link.part
     if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
-        raise refuse(link.name, "it has no axial stiffness, so the unit's stiffness is undefined", "")
+        raise refuse(link.name, "the link has no axial stiffness, so the unit's stiffness is undefined", "")
     try:
         whole = compliance(part.part if isinstance(part, Restricted) else part, link.material)
     except DesignError as error:

@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Model(Enum):
-    """Models: `ideal` kinematics, `mapped` model of axial springs (Shin & Moon), `lumped` model of hinges with 6x6 stiffness matrices."""
+    """Models: `ideal` for rigid bodies, `mapped` for axial springs (Shin & Moon), `lumped` for hinges with 6x6 stiffness matrices."""
 
     IDEAL = "ideal"
     MAPPED = "mapped"

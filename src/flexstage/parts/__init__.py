@@ -1,4 +1,4 @@
-"""Parts and bodies of a stage: data, ideal degrees of freedom and profiles; no stiffness, no CAD."""
+"""Parts and bodies of a stage: data, ideal degrees of freedom and profiles, without stiffness laws and CAD."""
 
 from flexstage.base.register import Register
 from flexstage.parts.amplified import Amplified, SteppingDrive
@@ -35,7 +35,7 @@ PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts",
     {part.kind: part for part in (*_HINGES, Membrane, ComplianceMatrix, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)},
 )
-"""Classes of parts with stiffness by kind, including members of compound parts."""
+"""Classes of parts with stiffness, by name of the kind; compound parts are included."""
 
 GAUGES: Register[type[Instrument]] = Register("flexstage.gauges", {gauge.kind: gauge for gauge in _GAUGES})
-"""Classes of gauges by kind (default: `Gauge`)."""
+"""Classes of gauges, by name of the kind (default: `Gauge`)."""

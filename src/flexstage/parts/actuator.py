@@ -20,7 +20,7 @@ class Actuator(Elastic):
     A stroke actuator (`input` is a displacement) has a free deformation s per unit of stroke u. The force of a stroke actuator with the
     stiffness k is k (dx - s u) for a relative displacement dx of its faces. The `input` of a force actuator is a force or a current. The
     actuator exerts `wrench` per unit of input on its second face, and the opposite wrench on its first face. A force actuator leaves all
-    degrees of freedom free; any stiffness is added separately. A positive input pushes the faces apart.
+    degrees of freedom free; a specified stiffness acts in addition to the force. A positive input pushes the faces apart.
     """
 
     input: ClassVar[Quantity] = DISPLACEMENT
@@ -82,11 +82,11 @@ class ThrustActuator(Actuator):
         return None
 
     def slew(self, limit: Number) -> Number | None:  # noqa: ARG002  (kinds that know one need it)
-        """Return the mean rate of change of the input from zero to a `limit` [input unit/s]; None without a known limit."""
+        """Return the mean rate [input unit/s] at which the input can rise from zero to `limit`; None if the rate is unknown."""
         return None
 
     def in_series(self, count: int) -> ThrustActuator:  # noqa: ARG002  (coils need it)
-        """Return an actuator with the electrical load of `count` such actuators in one circuit, but the force or torque of one."""
+        """Return an actuator with the electrical load of `count` equal actuators in one circuit, but the force or torque of one of them."""
         return self
 
     def loss(self, rms: Number) -> Number | None:  # noqa: ARG002  (kinds that know it need it)
@@ -141,7 +141,7 @@ class StrokeActuator(Actuator):
 
     @property
     def blocking_force(self) -> Number:
-        """Blocked force at full stroke [N]."""
+        """Blocked force at the full free stroke [N]."""
         raise NotImplementedError
 
     @property
@@ -182,7 +182,7 @@ class ChargedActuator(StrokeActuator):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Required: the bias is within the voltage range."""
+        """Required: the lowest voltage is below the highest voltage, and the bias is between them."""
         yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange both values", VOLTAGE)
         advice = "Use a bias within the range of the stack"
         yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)

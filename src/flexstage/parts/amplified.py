@@ -44,7 +44,7 @@ _Deformation: TypeAlias = tuple[_Shift, _Shift, _Shift, _Turn, _Turn, _Turn]
 
 
 class BetweenFaces(StrokeActuator):
-    """Stroke actuator with the force f = k (dx - s u): 6x6 stiffness k, motion dx between the faces, free deformation s per stroke u."""
+    """Stroke actuator with the force f = k (dx - s u): 6x6 stiffness k, motion dx between the faces, free deformation s u at stroke u."""
 
     diagonal: _Diagonal | None
     matrix: _Matrix | None
@@ -102,7 +102,7 @@ class BetweenFaces(StrokeActuator):
 
 
 def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
-    """Fields changed by a mirror across y."""
+    """Fields that a mirror image in the x-z plane changes."""
     for name, value in ((name, getattr(part, name, None)) for name in ("matrix", "compliance", "deformation", "inertia")):
         if value is None:
             continue
@@ -116,13 +116,15 @@ def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
 
 @dataclass(frozen=True, eq=False)
 class Amplified(BetweenFaces, ChargedActuator):
-    """Amplified piezo actuator between its two faces: f = k (dx - s u) (see `BetweenFaces`).
+    """Amplified piezo actuator: a 6x6 stiffness between two faces, with a free deformation in proportion to the stroke.
 
+    The force is f = k (dx - s u), with the stiffness k, the motion dx between the faces, and the free deformation s u at the stroke u.
     `stroke` is the full free stroke of the output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
     relative to the first at full stroke (default: the stroke along x). The free deformation can describe contracting actuators and
     parasitic motion. Exactly one of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness about the
-    centre at constant voltage. Half of `mass` is at each face, and half of `inertia`, which is about the centre. `free` lists the degrees
-    of freedom of the ideal model. `resonance` (one face fixed, the other free) is information only: internal modes are not modelled.
+    centre at constant voltage. Half of `mass` and half of `inertia` (about the centre) are at each face. `free` lists the degrees of
+    freedom of the ideal model. `resonance` is the resonance frequency with one face fixed and the other face free. It is information only:
+    internal modes are not modelled.
     """
 
     kind: ClassVar[str] = "amplified"
@@ -167,10 +169,10 @@ class Amplified(BetweenFaces, ChargedActuator):
 class SteppingDrive(BetweenFaces):
     """Stepping drive, self-locking without power, such as an inertia drive, inchworm or screw.
 
-    The stroke is the whole `travel` along x, half of it on each side of the nominal position, in steps of `resolution`. Exactly one of
-    `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness of the locked drive about its centre.
-    `holding_force` is the slip force along x: the load limit in both directions. Half of `mass` is at each face. The model is linear,
-    without backlash or step forces.
+    The stroke is the whole `travel` along x: half of the travel is on each side of the nominal position. `resolution` is the step. Exactly
+    one of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness of the locked drive about its centre.
+    `holding_force` is the force along x at which the drive slips. It is the load limit in tension and compression. Half of `mass` is at
+    each face. The model is linear, without backlash or step forces.
     """
 
     kind: ClassVar[str] = "stepper"

@@ -14,9 +14,10 @@ from flexstage.base.units.quantity import CURRENT, FREQUENCY, POSITIVE, RESISTAN
 
 @dataclass(frozen=True)
 class Amplifier(CheckedFields):
-    """Voltage amplifier that drives the capacitance C of a stack: first-order lag; ideal if no field is specified.
+    """Voltage amplifier with a first-order lag, which drives the capacitance C of a stack; ideal if no field is specified.
 
-    `bandwidth` [Hz] is specified directly, or is 1/(2 pi R C) with the output `resistance` R [ohm]. `current` [A] is the output limit.
+    The bandwidth [Hz] is the specified `bandwidth`, or 1/(2 pi R C) with the output `resistance` R [ohm]. `current` [A] is the largest
+    output current.
     """
 
     bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None

@@ -57,7 +57,7 @@ class Solid(Description):
         return self
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Return a mask of the points (n, 3), in the solid's frame, that are in the solid or within `slack` [m] of it (first design)."""
+        """Return a mask of the points (n, 3), in the solid's frame, that are in the first design's solid or within `slack` [m] of it."""
         half = 0.5 * first_design(np.real(self.sides), 1)
         return np.all(np.abs(points) <= half + slack, axis=1)
 
@@ -66,8 +66,8 @@ class Solid(Description):
 class Block(Solid):
     """Rectangular block centred at `at`, x edge along `along`, z edge along `up` (perpendicular to `along`).
 
-    Without directions, its edges are parallel to the axes of the drawing frame. `hole` gives the side lengths (x, y) [m] of a centred
-    rectangular through hole along the block's z edge. If `subtract`, the block is a hole (see `Body`).
+    By default, its edges are parallel to the axes of the drawing frame. `hole` gives the side lengths (x, y) [m] of a centred rectangular
+    through hole along the block's z edge. If `subtract`, the block is a hole (see `Body`).
     """
 
     material: str
@@ -159,7 +159,7 @@ class Cylinder(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Extrusion(Solid):
-    """Polygon extruded by a `height`: corners `outline` (x, y) in a plane through `at`, half of the height on either side.
+    """Polygon with the corners `outline` (x, y) in a plane through `at`, extruded by half of the `height` to each side of the plane.
 
     The x axis of the outline is along `along`, the height along `up` (perpendicular to `along`). The corners may be in clockwise or
     counter-clockwise order; the sides must not cross. If `subtract`, the extrusion is a hole (see `Body`).
@@ -191,7 +191,7 @@ class Extrusion(Solid):
 
     @property
     def corners(self) -> Array:
-        """Corners (..., n, 2) [m] relative to the centre of the bounding box, counter-clockwise as seen from +z (in the first design)."""
+        """Corners (..., n, 2) [m] relative to the centre of the bounding box, counter-clockwise as seen from +z (first design)."""
         least, largest = self._ends
         centred = self._drawn - 0.5 * (least + largest)[..., None, :]
         return centred if winding(first_design(np.real(centred), 2)) > 0.0 else centred[..., ::-1, :]
@@ -213,12 +213,12 @@ class Extrusion(Solid):
 
     @property
     def mirrored(self) -> Extrusion:
-        """The outline with y reversed."""
+        """Extrusion of the outline with y reversed."""
         return replace(self, outline=tuple((x, -y) for x, y in self.outline))
 
     @property
     def thinnest(self) -> Number:
-        """Smaller of the height and the least distance of a corner from a non-adjacent side [m], in the first design."""
+        """Smallest dimension [m] of the first design: the height, or the distance of a corner from a non-adjacent side."""
         corners = first_design(np.real(self.corners), 2)
         begin, run = corners, np.roll(corners, -1, axis=0) - corners
         share = np.clip(np.einsum("ijx,jx->ij", corners[:, None] - begin, run) / np.sum(run * run, axis=1), 0.0, 1.0)
@@ -228,7 +228,7 @@ class Extrusion(Solid):
         return min(float(np.min(gaps[apart])), single(self.height))
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Return a mask of the points in the extrusion, or near one of its sides."""
+        """Return a mask of the points (n, 3) that are in the first design's extrusion or within `slack` [m] of it."""
         corners = first_design(np.real(self.corners), 2)
         level = np.abs(points[:, 2]) <= 0.5 * single(self.height) + slack
         return level & within_polygon(points[:, :2], corners, slack)
@@ -268,7 +268,8 @@ class Sphere(Solid):
 class Inertia(Description):
     """Moments and products of inertia about the centre of mass, along the axes of the body's drawing frame [kg m^2].
 
-    The products are the integrals of x y, x z, y z over the mass (the tensor's off-diagonal entries are their negatives).
+    The products are the integrals of x y, x z, y z over the mass (the off-diagonal entries of the inertia tensor are the negatives of the
+    products).
     """
 
     xx: Annotated[Number, INERTIA, NOT_NEGATIVE]
@@ -299,11 +300,11 @@ class Imported(Solid):
 
     Rigid-body models use specified values in the file's axes: `size` (sides) and `middle` of the bounding box, `mass`, `centre` of mass,
     and `inertia` about the centre of mass. The solid model compares these values with the file (tolerance 0.1 %). `sha256` is the digest of
-    the file's bytes: it identifies the version, and caches use it instead of the file.
+    the file's bytes. The digest identifies the file's version, and caches use the digest instead of the file.
 
     `wall` is the thickness of the thinnest wall, for the mesh (default: the shortest side). A relative path is relative to the design file.
     If the file has several solids, `solid` selects one by name or number (`#2`). If `reflected`, the solid is the mirror image of the
-    file's solid in its x-z plane; `middle`, `centre` and `inertia` describe the mirror image.
+    file's solid in the x-z plane of the file; `middle`, `centre` and `inertia` describe the mirror image.
     """
 
     material: str
@@ -352,7 +353,7 @@ class Imported(Solid):
 
 @dataclass(frozen=True, eq=False)
 class SolidWithHoles(Solid):
-    """Solid with `holes`: subtracted solids of its body, drawn in the frame of the solid's centre."""
+    """Solid with `holes`, which are the subtracted solids of its body, drawn in the frame at the centre of this solid."""
 
     solid: Solid
     holes: tuple[Solid, ...]
@@ -384,7 +385,7 @@ class SolidWithHoles(Solid):
 
     @property
     def drawn(self) -> Iterator[tuple[Solid, Frame]]:
-        """The solid and its holes, each with its drawing frame."""
+        """The solid and its holes, each one together with its drawing frame."""
         yield self.solid, Frame(np.eye(3), np.zeros(3))
         yield from ((hole, self.solid.frame) for hole in self.holes)
 
@@ -404,8 +405,8 @@ def _holds(hole: Solid, points: Array, slack: float) -> Array:
 class PlacedSolid:
     """Solid with its frame relative to its body or the stage.
 
-    The frame's origin is the solid's centre. The axes of the frame are along the edges of a block (z along the hole); for a cylinder, x is
-    along the axis.
+    The frame's origin is the solid's centre. For a block, the axes of the frame are along the edges, with z along the through hole. For a
+    cylinder, x is along the cylinder's axis.
     """
 
     solid: Solid
@@ -461,7 +462,7 @@ def winding(corners: Array) -> float:
 
 
 def triangles(corners: Array) -> list[tuple[int, int, int]]:
-    """Triangulate a simple polygon (n, 2) by ear clipping (Meisters 1975); corners counter-clockwise.
+    """Triangulate a simple polygon with counter-clockwise corners (n, 2) by ear clipping (Meisters 1975).
 
     >>> triangles(np.array([[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]))
     [(0, 2, 3), (0, 1, 2)]
@@ -489,7 +490,7 @@ def _ear(corners: Array, left: list[int], place: int) -> float:
 
 
 def within_polygon(points: Array, corners: Array, slack: float) -> Array:
-    """Return by ray crossing a mask of the points (n, 2) in the polygon with `corners` (k, 2), or within `slack` of its sides.
+    """Return a mask of the points (n, 2) that are in the polygon with `corners` (k, 2) or within `slack` of its sides, by ray crossing.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> within_polygon(np.array([[0.5, 0.5], [1.5, 0.5], [1.05, 0.5]]), square, 0.1).tolist()
@@ -516,12 +517,12 @@ class Body(Description):
 
     Solids with `subtract` are holes: they remove their volume from the body's other solids of the same material. Specify either solids or
     mass properties; a body with neither is massless. If `point`, the specified mass is a point mass without inertia. `reference` is the
-    reference point of the body's twist. The default reference point is the centre of mass; for a massless body, the mean position of its
-    joints.
+    reference point of the body's twist. The default reference point is the centre of mass; for a massless body, it is the mean position of
+    the body's joints.
 
-    `of` names another body of the stage, or the ground, that owns the solids of this body. An example is a lug of the platform, which is
-    drawn in a unit's frame and placed with every instance. A body with `of` does not move independently: its solids, mass, points and
-    joints belong to the owner. A body with `of` has neither a specified mass nor a reference point.
+    `of` names another body of the stage, or the ground, that owns the solids of this body. Example: a lug that belongs to the platform is
+    drawn in a unit, so that every instance of the unit adds one lug to the platform. A body with `of` does not move independently: its
+    solids, mass, points and joints belong to the owner. A body with `of` has neither a specified mass nor a reference point.
     """
 
     solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))

@@ -69,6 +69,6 @@ class Cartwheel(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Required: the leaves are thinner than wide, and the angle of a pair is below pi."""
+        """Required: the leaves are thinner than wide, and the angle between the leaves of a pair is below pi."""
         yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves of a pair", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")

@@ -36,8 +36,9 @@ class ComplianceMatrix(Elastic):
 
     Entries are in m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are the ideal degrees of
     freedom. `replaces` names the drawn part that the matrix replaces. The drawn part supplies the shape for the solid model, and the
-    material for drift and structural damping. `mass` is a point mass at the part's centre; half of it belongs to each end. If `centre` (of
-    mass) or `inertia` (about the centre of mass) is specified, the mass is a rigid solid instead; both are in the axes of the link frame.
+    material for drift and structural damping. `mass` is a point mass at the part's centre; half of it belongs to each end. If `centre` (the
+    centre of mass) or `inertia` (about the centre of mass) is specified, the mass matrix is that of a rigid solid instead of a point mass.
+    `centre` and `inertia` are in the axes of the link frame.
     """
 
     kind: ClassVar[str] = "compliance_matrix"
@@ -76,7 +77,7 @@ class ComplianceMatrix(Elastic):
 
     @property
     def carried(self) -> Array:
-        """Mass matrix (..., 12, 12) for the twists of both ends at the centre, because the part has no length."""
+        """Mass matrix (..., 12, 12) for the twists of both ends. Both ends are at the centre, because the part has no length."""
         if self.inertia is None and self.centre is None:
             return point_masses(0.5 * self.mass, 0.5 * self.mass)
         inertia = np.zeros((3, 3)) if self.inertia is None else tensor(self.inertia)
@@ -90,7 +91,7 @@ class ComplianceMatrix(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class Joint(Description):
-    """Ideal joint without elasticity or mass: `free` degrees of freedom; all others are locked. If none is free, the joint is a weld."""
+    """Ideal joint without elasticity or mass: only the degrees of freedom in `free` are free. If `free` is empty, the joint is a weld."""
 
     kind: ClassVar[str] = "joint"
     free: tuple[Freedom, ...] = ()

@@ -15,13 +15,13 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.shape import Elastic
 
 FIRST, SECOND = "first", "second"
-"""Names, in members, of the two bodies joined by the link."""
+"""Names that the members use for the two bodies joined by the link."""
 _Z = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """Member of a compound: part, the two bodies that it `joins` (`first`, `second`, inner bodies), and pose in the compound's frame."""
+    """Member of a compound: its part, the two bodies that it `joins` (`first`, `second` or inner bodies), its pose in the compound."""
 
     part: Elastic
     joins: tuple[str, str]
@@ -41,8 +41,8 @@ class Composition:
 class Compound(Elastic):
     """Compound part, replaced by its members at expansion. Members of the link `B1/pivot` are named `B1/pivot.left`, ...
 
-    The numeric fields of a compound have addresses as in any part; the values may be arrays or complex numbers. Equal members should be the
-    same object, so that their stiffness law is computed only once.
+    The numeric fields of a compound have addresses like those of any part; their values may be arrays or complex numbers. Equal members
+    should be the same object, so that their stiffness law is computed only once.
     """
 
     @property

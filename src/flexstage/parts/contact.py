@@ -32,14 +32,14 @@ class Seat(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Contact(Elastic):
-    """Ball of a `radius` pressed on its `seat`: a flat normal to x, or a V groove along z with x as bisector.
+    """Ball of a `radius` pressed on its `seat`. The seat is a flat face normal to x, or a V groove along z with x as bisector.
 
     The first body has the seat, the second body the ball. The link's origin is the ball's centre; x points out of the seat. `material` is
-    the ball's material, `counter` the seat's. `preload` is the initial compression force along x; the stiffness requires a preload.
-    `half_angle` is the angle between a wall of the groove and x. `friction` is the friction coefficient for the slip check. The contact is
-    massless: the mass of the ball belongs to its body.
+    the ball's material, `counter` the seat's. `preload` is the initial compression force along x. A preload is required: a contact without
+    preload has no stiffness. `half_angle` is the angle between a wall of the groove and x. `friction` is the friction coefficient for the
+    slip check. The contact is massless: the mass of the ball belongs to its body.
 
-    Ideal degrees of freedom, without friction: along y and z on a flat, along z in a groove, and all rotations.
+    Ideal degrees of freedom without friction: translation along y and z on a flat seat, along z in a groove, and all three rotations.
     """
 
     kind: ClassVar[str] = "contact"
@@ -89,7 +89,7 @@ class Contact(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class Hertz:
-    """Hertzian contacts of a preloaded ball: `force` [N], contact radius `spot` [m], `normal` and `tangential` stiffness [N/m] of each.
+    """Hertzian contacts of a preloaded ball, each with `force` [N], contact radius `spot` [m], `normal` and `tangential` stiffness [N/m].
 
     `normals` (..., c, 3) of the c contacts point from the seat to the ball. `motion` (..., c, 3, 6) maps the twist of the ball's centre to
     the displacement at each contact.
@@ -111,12 +111,12 @@ class Hertz:
 
 
 def hertz(part: Contact, material: Material) -> Hertz:
-    """Compute Hertzian contacts of a ball: a flat carries the preload F, each wall of a groove of half angle h carries F / (2 sin h).
+    """Compute the Hertzian contacts of a ball. A flat carries the preload F; each wall of a groove with half angle h carries F / (2 sin h).
 
     A ball of radius R and a seat with Young's moduli E1, E2, shear moduli G1, G2 and Poisson's ratios nu1, nu2 have the contact moduli E*
     and G*, with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. For the force P of one contact, the contact
-    radius is a = (3 P R / (4 E*))^(1/3), the normal stiffness 2 E* a = (6 E*^2 R P)^(1/3), and without slip the tangential stiffness 8 a
-    G*.
+    radius is a = (3 P R / (4 E*))^(1/3), the normal stiffness is 2 E* a = (6 E*^2 R P)^(1/3), and the tangential stiffness without slip is
+    8 a G*.
 
     Assumptions: isotropic materials, smooth faces, contact radius much smaller than the ball. Raises `DesignError` for a crystal, or if the
     seat's material is missing.
@@ -133,8 +133,8 @@ def hertz(part: Contact, material: Material) -> Hertz:
 def contact_stiffness(part: Contact, material: Material) -> Array:
     """Compute the stiffness (..., 6, 6) about the ball's centre: the sum over all contacts, without contact moments.
 
-    On a flat, rolling and spinning about the contact point are free. The tangential stiffness times the radius couples rotation with
-    translation of the ball's centre; times the radius squared, it resists rotation.
+    On a flat, rolling and spinning about the contact point are free. The tangential stiffness multiplied by the radius couples rotation
+    with translation of the ball's centre. The tangential stiffness multiplied by the square of the radius resists rotation.
 
     >>> steel = Material(young=210e9, poisson=0.3, density=7850.0)
     >>> ball = Contact("steel", "steel", radius=0.005, preload=10.0)

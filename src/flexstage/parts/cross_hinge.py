@@ -18,7 +18,7 @@ from flexstage.parts.shape import INNER_MODES, Order
 
 @dataclass(frozen=True, eq=False)
 class CrossHinge(Compound):
-    """Cross-axis flexural pivot about z: two leaves that cross at an `angle`, each of `length` from body to body.
+    """Cross-axis flexural pivot about z: two leaves cross at an `angle`; the `length` of each leaf is from the first to the second body.
 
     The link's origin is the crossing, x the bisector of both leaves. `crossing` is the distance from the first body to the crossing divided
     by the length (Wittrick's lambda). `spacing` is the distance along z between the middle planes of adjacent leaves. With a
@@ -44,7 +44,7 @@ class CrossHinge(Compound):
 
     @property
     def composition(self) -> Composition:
-        """Leaves `left` and `right` of the x axis. Three leaves are `left_low`, `left_high`, and `right` between them."""
+        """Leaves of the pivot: `left` and `right`; with a `middle_width`, `left_low`, `left_high`, and the middle leaf `right`."""
         along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
         centre = (0.5 - self.crossing) * self.length
         leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)

@@ -45,11 +45,11 @@ class Cross(Section):
 
     @cached_property
     def torsion(self) -> Number:
-        """Saint-Venant's torsion constant t^4 (2 b / (3 t) - 0.08476 - 4.6 exp(-pi b / (2 t))) [m^4], within 2e-4 for b >= 3 t.
+        """Saint-Venant's torsion constant t^4 (2 b / (3 t) - 0.08476 - 4.6 exp(-pi b / (2 t))) [m^4]; error <= 2e-4 for b >= 3 t.
 
-        The terms are two strips b t^3 / 3 with corrections for the junction and the ends (form of Trayer & March, NACA Report 334, 1930).
-        The coefficients fit finite-element solutions of Prandtl's stress function (Timoshenko & Goodier, Theory of Elasticity, section
-        106).
+        The first term is that of two strips, 2 b t^3 / 3. The others are corrections for the junction and the ends of the leaves, in the
+        form of Trayer & March (NACA Report 334, 1930). The coefficients fit finite-element solutions of Prandtl's stress function
+        (Timoshenko & Goodier, Theory of Elasticity, section 106).
         """
         slender = self.width / self.thickness
         return self.thickness**4 * (2.0 / 3.0 * slender - 0.08476 - 4.6 * np.exp(-0.5 * np.pi * slender))
@@ -82,7 +82,7 @@ class Cross(Section):
         return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return Saint-Venant's stress on the leaves' faces plus the shear stress of leaves in bending; stress concentration is omitted."""
+        """Return Saint-Venant's shear stress on the leaves' faces plus the shear stress of leaf bending, without stress concentration."""
         strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
         return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
 

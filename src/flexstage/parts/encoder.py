@@ -13,11 +13,11 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True, eq=False)
 class Encoder(Instrument):
-    """Linear encoder: displacement of a scale on a body along the gauge's x axis, positive along +x.
+    """Linear encoder: measures the displacement of a body's scale along the gauge's x axis, positive along +x.
 
     `range` is the total travel of the scale. Each `period` of the scale is divided into `steps`; with `steps` 1, a step is one period.
     `noise_density` is the amplitude density of white noise [m/Hz^0.5], `bandwidth` the measurement bandwidth [Hz]. Rotation of the scale
-    has no first-order effect.
+    has no first-order effect on the measurement.
     """
 
     kind: ClassVar[str] = "encoder"

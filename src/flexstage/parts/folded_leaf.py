@@ -20,8 +20,8 @@ class FoldedLeaf(Compound):
     """Folded leaf with a right angle: it constrains only the translation along its fold, z.
 
     The link's origin is the fold. The first leaf, of `length`, extends along x from the first body to the fold. The second leaf, of
-    `second_length` (default: equal), extends along y to the second body. `corner` is the side of the solid square at the fold; the two
-    lengths do not include the square (default: a rigid, massless fold).
+    `second_length` (default: equal), extends along y to the second body. `corner` is the side length of a solid square at the fold; the two
+    lengths do not include the square. Without a `corner`, the fold is rigid and massless.
     """
 
     kind: ClassVar[str] = "folded_leaf"

@@ -35,10 +35,10 @@ class ForceActuator(ThrustActuator):
         return 1.0
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Return zero stiffness, and half of the mass on each body."""
+        """Return a zero stiffness matrix, and the mass matrix with half of the mass on each body."""
         return Stated(np.zeros((6, 6)), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
-        """Limits of the input: the largest force."""
+        """Limit of the input: `maximum`, both for continuous and for short use."""
         yield ForceLimit("maximum force", self.maximum, self.maximum)

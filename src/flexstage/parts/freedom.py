@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Freedom(Enum):
-    """Degree of freedom: a component of the relative twist at a link, in its frame; translations, then rotations.
+    """Degree of freedom: a component of the relative twist at a link, in the link's frame. The translations come before the rotations.
 
     >>> [freedom.value for freedom in Freedom]
     ['x', 'y', 'z', 'rx', 'ry', 'rz']
@@ -21,7 +21,7 @@ class Freedom(Enum):
 
     @property
     def index(self) -> int:
-        """Position in a 6-vector."""
+        """Index (0 to 5) of the degree of freedom in a twist."""
         return ALL.index(self)
 
 

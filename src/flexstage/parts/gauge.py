@@ -25,10 +25,10 @@ class SensorSense(Enum):
 class Instrument(Description):
     """Common properties of every `kind` of gauge; `parts.GAUGES` lists the kinds.
 
-    A gauge measures one `freedom` of a body's motion relative to its base, in the gauge's frame: a displacement [m] or a rotation [rad]. If
-    `gap`, the gauge measures the gap to a target along x and requires a sense (opening or closing gap). If `inside`, the gauge is on a
-    link. `range` is the total measuring span, `resolution` the quantisation step [m, rad]. The amplitude density of white noise,
-    `noise_density` [m/Hz^0.5, rad/Hz^0.5], and the `bandwidth` [Hz] are `None` if unknown.
+    A gauge measures one `freedom` of a body's motion relative to its base, in the gauge's frame: a displacement [m] or a rotation [rad]. A
+    gauge with `gap` measures the gap to a target along x and requires a sense (opening or closing gap). A gauge with `inside` is on a link.
+    `range` is the total measuring span, `resolution` the quantisation step [m, rad]. The amplitude density of white noise, `noise_density`
+    [m/Hz^0.5, rad/Hz^0.5], and the `bandwidth` [Hz] are `None` if unknown.
     """
 
     kind: ClassVar[str]
@@ -74,7 +74,7 @@ class Gauge(DisplacementGauge):
 
 @dataclass(frozen=True, eq=False)
 class Combination(Instrument):
-    """Single gauge equivalent to a weighted sum of gauges; `read` is the measured quantity."""
+    """Single gauge that is equivalent to a weighted sum of gauges; `read` is the measured quantity."""
 
     kind: ClassVar[str] = "sum"
     read: Quantity

@@ -33,10 +33,10 @@ class Leaf(Shaped):
     """Leaf spring: `length` along x, `thickness` along y, `width` along z.
 
     Ideal degrees of freedom: translation along y, bending about z, twist about x. For the section `BEAM`, the stiffness law omits plate
-    action and restrained warping. For a plate with `FREE` ends, the stiffness law omits only restrained warping. `inner_modes` is the
-    number of bending modes and of torsion modes in the lumped model.
+    action and restrained warping. For a plate with `FREE` ends, the stiffness law omits only restrained warping. The lumped model has
+    `inner_modes` bending modes and the same number of torsion modes.
 
-    A leaf that is not straight when free has an initial `curvature` about z (positive: towards y), or a `face_temperature_difference` (face
+    If the free leaf is not straight, specify its initial `curvature` about z (positive: towards y) or `face_temperature_difference` (face
     +y minus face -y). The initially bent leaf is mounted straight. Models of large displacements include the mounting stress; other models
     assume a straight leaf.
     """

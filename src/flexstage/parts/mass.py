@@ -26,7 +26,7 @@ class MassProperties:
 
 
 def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "") -> MassProperties | None:
-    """Compute mass properties of a body; `None` if it has neither a specified mass nor solids.
+    """Compute mass properties of a body; `None` if the body has neither a specified mass nor solids.
 
     >>> block = Block("steel", size=(0.1, 0.1, 0.01))
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -49,7 +49,7 @@ def _drawn_mass(body: Body, materials: tuple[tuple[str, Material], ...], name: s
 
 
 def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame: Frame) -> list[Drawn]:
-    """Return the solids of a body with address and density, drawn in a `frame`.
+    """Return the solids of a body, each with its address and density, drawn in a `frame`.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> drawn_solids(Body(solids={"plate": Block("steel", size=(0.1, 0.1, 0.01))}), {"steel": steel}, "platform", identity())[0].name
@@ -62,7 +62,7 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
 def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
     """Compute mass properties of the union of solids, in the frame in which the solids are drawn.
 
-    If `meant` specifies nominal positions of the solids, their common volumes are computed there.
+    If `meant` contains the solids at their nominal positions, the common volumes of the solids are computed at these positions.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
@@ -75,7 +75,8 @@ def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = No
 def of_moments(density: Number, moments: Moments) -> MassProperties:
     """Compute mass properties of a region of uniform density rho [kg/m^3] from its moments.
 
-    The inertia tensor about the centre is J = rho (tr S I - S), with the second moments S of the volume and the unit matrix I.
+    The inertia tensor about the centre is J = rho (tr(S) I - S), with the second moments S of the volume about its centre and the unit
+    matrix I.
 
     >>> of_moments(3.0, Moments(np.array(2.0), np.zeros(3), np.eye(3))).inertia.diagonal().tolist()
     [6.0, 6.0, 6.0]

@@ -61,7 +61,7 @@ class Material(Description):
 
     @property
     def modulus(self) -> Number:
-        """Young's modulus [Pa]; NaN for a crystal, because its modulus depends on the direction (`oriented`)."""
+        """Young's modulus [Pa]; NaN for a crystal, because its modulus depends on the direction (see `oriented`)."""
         return np.nan if self.young is None else self.young
 
     @property
@@ -83,7 +83,7 @@ class Material(Description):
 
     @property
     def shear_across(self) -> Number | None:
-        """Shear modulus [Pa] in the x-y plane if it differs from that in the x-z plane; `None` for an isotropic material."""
+        """Shear modulus [Pa] in the x-y plane, which may differ from the modulus in the x-z plane; `None` for an isotropic material."""
         return None
 
     @property
@@ -154,16 +154,16 @@ class Material(Description):
     def oriented(self, rotation: Array) -> Material:
         """Return the material in the axes of a part: x along the part, z along its width.
 
-        The columns of `rotation` (..., 3, 3) are the part's axes in the stage. Isotropic materials are returned unchanged.
+        The columns of `rotation` (..., 3, 3) are the part's axes in the stage's frame. Isotropic materials are returned unchanged.
 
         A cubic crystal has the compliance S = C^-1 and the anisotropy J = S11 - S12 - S44/2. For an axis with components n1, n2, n3 in the
-        crystal, Young's modulus E is given by 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 + n3^2 n1^2). With m1, m2, m3 of a second axis and q =
-        n1^2 m1^2 + n2^2 m2^2 + n3^2 m3^2, Poisson's ratio is -E (S12 + J q), and the shear modulus G is given by 1/G = S44 + 4 J q (Nye
-        1957; Hopcroft, Nix & Kenny, J. MEMS 19 (2010) 229-238).
+        crystal, Young's modulus E is given by 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 + n3^2 n1^2). With the components m1, m2, m3 of a
+        second axis and q = n1^2 m1^2 + n2^2 m2^2 + n3^2 m3^2, Poisson's ratio is -E (S12 + J q), and the shear modulus G is given by 1/G =
+        S44 + 4 J q (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS 19 (2010) 229-238).
 
-        Beams along x use E along x, and G of the planes xy and xz. For wide leaves, Poisson's ratio in the plate modulus E / (1 - nu^2) is
-        -S13 / (S11 S33)^(1/2), with the compliance S in the axes of the part. In directions other than 100, 110 and 111, tension and
-        bending are coupled with shear and twist; the returned material omits this coupling.
+        Beams along x use Young's modulus along x and the shear moduli of the planes xy and xz. For wide leaves, Poisson's ratio in the
+        plate modulus E / (1 - nu^2) is -S13 / (S11 S33)^(1/2), with the compliance S in the axes of the part. In directions other than 100,
+        110 and 111, tension and bending are coupled with shear and twist; the returned material omits this coupling.
         """
         if not self.is_cubic:
             return self
@@ -186,10 +186,10 @@ class Material(Description):
         )
 
     def stiffness_tensor(self, rotation: Array) -> Array:
-        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in rotated axes, the columns of `rotation` (..., 3, 3) in the stage's frame.
+        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in other axes: the columns of `rotation` (..., 3, 3), in the stage's frame.
 
-        The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. With the components q_ai of the crystal's three axes a, and
-        d_ij = 1 for i = j, else 0 (Nye 1957):
+        The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. The stiffness tensor C_ijkl follows from component i of crystal
+        axis a, q_ai, and from the Kronecker delta d_ij (Nye 1957):
 
         C_ijkl = C12 d_ij d_kl + C44 (d_ik d_jl + d_il d_jk) + (C11 - C12 - 2 C44) sum_a q_ai q_aj q_ak q_al.
 

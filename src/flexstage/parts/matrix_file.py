@@ -130,7 +130,7 @@ def _mat(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
     sparse = [name for name in names if "MATLAB_sparse" in held.groups.get(name, {})]
     if sparse:
         raise refuse(
-            str(path), f"{' and '.join(sparse)} is sparse, not supported in version 7.3", "In MATLAB, save full(K), or save with -v7"
+            str(path), f"{' and '.join(sparse)} is sparse, unsupported in version 7.3", "In MATLAB, save full(K), or save with -v7"
         )
     return {name: held.read(name).T if name in names else np.zeros(0) for name, each in held.arrays.items() if each.kind in "fiuc"}
 

@@ -16,9 +16,9 @@ from flexstage.parts.shape import Elastic, Order
 class Membrane(Elastic):
     """Flat annular membrane normal to x, clamped to a hub of `inner` diameter (second body) and a rim of `outer` diameter (first body).
 
-    Hub and rim are rigid; both ends of the part are at its centre. Ideal degrees of freedom: translation along x, tilt about y and z. Half
-    of `mass` is at the hub, half at the rim. The solid model has no shape for this part. For a spiral or perforated membrane, use a
-    `compliance_matrix`.
+    Hub and rim are rigid; the part's ends, at which it joins the two bodies, are both at its centre. Ideal degrees of freedom: translation
+    along x, tilt about y and z. Half of `mass` is at the hub, half at the rim. The solid model cannot represent this part. For a spiral or
+    perforated membrane, use a `compliance_matrix`.
     """
 
     kind: ClassVar[str] = "membrane"

@@ -18,8 +18,9 @@ class Neck(Profiled):
     """Two-axis neck hinge, round or rectangular. The neck's thickness varies along x according to the `profile`.
 
     Without `width` the neck is round: `thickness` is its smallest diameter, and a circular profile gives a toroid. A rectangular neck has
-    `thickness` along y and `width` along z; both increase towards the ends as in the profile. Ideal degrees of freedom: the three
-    rotations. Torsion is ideally free, because locked torsion would transmit a couple. The elastic models use the torsional stiffness.
+    `thickness` along y and `width` along z; both increase towards the ends according to the profile. Ideal degrees of freedom: the three
+    rotations. In the ideal model, torsion is free, because locked torsion would transmit a couple. The elastic models use the torsional
+    stiffness.
     """
 
     kind: ClassVar[str] = "neck"
@@ -34,6 +35,6 @@ class Neck(Profiled):
         return ROTATIONS
 
     def grown(self, up: Number) -> Section:
-        """Return the section at a profile height `up` [m], which is added on all sides."""
+        """Return the cross-section where the profile has the height `up` [m]; this height is added on all sides."""
         height = self.thickness + 2.0 * up
         return circle(height) if self.width is None else Rectangle(height, self.width + 2.0 * up)

@@ -30,7 +30,7 @@ class Notch(Profiled):
         return (Freedom.RZ,)
 
     def grown(self, up: Number) -> Rectangle:
-        """Return the section at a profile height `up` [m]; the width is constant."""
+        """Return the cross-section where the profile has the height `up` [m]; the width is constant."""
         return Rectangle(self.thickness + 2.0 * up, self.width)
 
     @property

@@ -45,7 +45,7 @@ Part: TypeAlias = Elastic | Joint | Restricted
 
 
 def inner(part: Part) -> Elastic | Joint:
-    """Return the part; for a restricted part, the part inside it."""
+    """Return the part itself, or the part inside a restricted part."""
     return part.part if isinstance(part, Restricted) else part
 
 
@@ -109,7 +109,7 @@ def ports_of(part: Part) -> Mapping[str, Port]:
 
 
 def push_of(part: Part) -> Number | None:
-    """Return the preload with which a part pushes its ends apart [N]; `None` without a preload.
+    """Return the preload [N] with which a part pushes its ends apart; `None` without a preload.
 
     >>> push_of(Joint()) is None
     True

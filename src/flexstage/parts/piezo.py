@@ -33,9 +33,10 @@ class Piezo(ChargedActuator, Shaped):
     """Piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands).
 
     `stroke` is the full free stroke over the voltage range, `stiffness` the axial stiffness k, and `diameter` the diameter of the ceramic.
-    The section A of the ceramic and the length L determine the other stiffness terms, with the effective modulus k L / A.
-    `bending_rigidity` is the bending rigidity of a stack stiffened by its casing (default: that of the ceramic). The blocked force is the
-    product of stroke and stiffness. `maximum_load` is the largest compression, `tensile_limit` the largest tension, both without preload.
+    The other stiffness terms follow from the ceramic's section area A, the length L and the effective modulus k L / A. `bending_rigidity`
+    is the bending rigidity of a stack stiffened by its casing (default: the bending rigidity of the ceramic alone). The blocked force is
+    the product of stroke and stiffness. `maximum_load` is the largest compression and `tensile_limit` the largest tension in the stack. The
+    force in the stack is the sum of load and `preload`.
     """
 
     kind: ClassVar[str] = "piezo"
@@ -60,7 +61,7 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def blocking_force(self) -> Number:
-        """Blocked force at full stroke [N], the product of stroke and stiffness.
+        """Blocked force [N]: product of the full free stroke and the stiffness.
 
         >>> round(Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01).blocking_force, 6)
         2550.0
@@ -79,6 +80,6 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Required: the preload is at most the maximum load, and the bias is within the voltage range."""
+        """Required: the preload does not exceed the maximum load, and the bias is within the voltage range."""
         yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Use a smaller preload", FORCE, strict=False)
         yield from super().orders

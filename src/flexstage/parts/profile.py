@@ -20,14 +20,14 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE,
 
 @dataclass(frozen=True, eq=False)
 class Circular(Description):
-    """Circular profile of two half-circle cuts of equal radius R: x = R sin p, w = R (1 - cos p), p from -90 to 90 degrees."""
+    """Circular profile of two half-circle cuts of radius R; at x = R sin p, -90 <= p <= 90 degrees, the height is w = R (1 - cos p)."""
 
     radius: Annotated[Number, LENGTH, POSITIVE]
 
 
 @dataclass(frozen=True, eq=False)
 class Elliptic(Description):
-    """Elliptic profile of two half-ellipse cuts: x = a sin p, w = c (1 - cos p), with `along` = a and `across` = c (c = 0: a leaf)."""
+    """Elliptic profile of two half-ellipse cuts, height w = c (1 - cos p) at x = a sin p: `along` = a, `across` = c (c = 0: leaf)."""
 
     along: Annotated[Number, LENGTH, POSITIVE]
     across: Annotated[Number, LENGTH, POSITIVE]
@@ -69,7 +69,7 @@ class Contour(Description):
 
     @property
     def radius_at_throat(self) -> Number | None:
-        """Radius of curvature at the thinnest point [m]; `None` if it is not unique."""
+        """Radius of curvature at the thinnest point [m]; `None` if there is no unique thinnest point."""
         return None
 
     @property
@@ -79,7 +79,7 @@ class Contour(Description):
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Boundaries [m] of the smooth pieces of the profile, from the middle to an end, for the first design; both are included."""
+        """Boundaries [m] of the profile's smooth pieces, from the middle to an end (both included), for the first design."""
         return 0.0, 0.5 * single(self.span)
 
     def height(self, station: Array) -> Array:
@@ -109,7 +109,7 @@ class _Conic(Contour):
 
 @dataclass(frozen=True, eq=False)
 class Parabolic(_Conic):
-    """Parabolic profile, w = c (x/a)^2: `along` = a is half the length, `across` = c (Lobontiu et al., Precision Engineering 26, 2002)."""
+    """Parabolic profile of height w = c (x/a)^2: `along` = a is half the length, `across` = c (Lobontiu et al., Precis. Eng. 26, 2002)."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "parabolic")
     along: Annotated[Number, LENGTH, POSITIVE]
@@ -127,10 +127,10 @@ class Parabolic(_Conic):
 
 @dataclass(frozen=True, eq=False)
 class Hyperbolic(_Conic):
-    """Hyperbolic profile, w = (q^2 + c (c + 2 q) (x/a)^2)^1/2 - q: `along` = a is half the length, `across` = c, `semi_axis` = q.
+    """Hyperbolic profile of height w = (q^2 + c (c + 2 q) (x/a)^2)^(1/2) - q: half length `along` = a, `across` = c, `semi_axis` = q.
 
-    The semi-axis is across the hinge. If q is half the thickness, both cuts are branches of one hyperbola (Lobontiu et al., Precision
-    Engineering 26, 2002). A large q gives a parabola; a small q gives straight flanks with a corner.
+    The semi-axis q of the hyperbola is perpendicular to the hinge's axis. If q is half the thickness, both cuts are branches of one
+    hyperbola (Lobontiu et al., Precision Engineering 26, 2002). A large q gives a parabola; a small q gives straight flanks with a corner.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "hyperbolic")
@@ -140,24 +140,24 @@ class Hyperbolic(_Conic):
 
     @property
     def steepness(self) -> Number:
-        """Squared ratio of half the length to the semi-axis along the hinge: c (c + 2 q) / q^2, c = `across`, q = `semi_axis`."""
+        """Squared ratio of half the length to the hyperbola's semi-axis along x: c (c + 2 q) / q^2, c = `across`, q = `semi_axis`."""
         share = self.across / self.semi_axis
         return share * (share + 2.0)
 
     @property
     def radius_at_throat(self) -> Number:
-        """Radius of curvature at the thinnest point, a^2 q / (c (c + 2 q)) [m]."""
+        """Radius of curvature at the thinnest point, a^2 q / (c (c + 2 q)) [m], with a = `along`, c = `across`, q = `semi_axis`."""
         return self.along * self.along / (self.semi_axis * self.steepness)
 
     def height(self, station: Array) -> Array:
-        """Return the height of the cuts, q ((1 + c (c + 2 q) / q^2 (x/a)^2)^1/2 - 1) [m]."""
+        """Return the height of the cuts, q ((1 + (c (c + 2 q) / q^2) (x/a)^2)^(1/2) - 1) [m]."""
         inside = single(self.steepness) * self._share(station) ** 2
         return single(self.semi_axis) * inside / (np.sqrt(1.0 + inside) + 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Power(_Conic):
-    """Power-function profile, w = c |x/a|^n: `along` = a is half the length, `across` = c, `exponent` = n.
+    """Power-function profile of height w = c |x/a|^n: `along` = a is half the length, `across` = c, `exponent` = n.
 
     n = 1 gives straight flanks with a corner, n = 2 gives a parabola, and a large n gives nearly a leaf. Reference: Linss, Henning &
     Zentner (Modeling and design of flexure hinge-based compliant mechanisms, in Kinematics, 2019).
@@ -175,10 +175,10 @@ class Power(_Conic):
 
 @dataclass(frozen=True, eq=False)
 class Vee(Contour):
-    """V-shaped profile: straight flanks at an `angle` to one another, with a tip of `radius` r; `length` from end to end.
+    """V-shaped profile: straight flanks with the `angle` between them, and a tip of `radius` r; `length` is from end to end.
 
-    The slope of a flank is e = (180 degrees - angle)/2. The arc of the tip is x = r sin p, w = r (1 - cos p) up to p = e; from there the
-    flank is straight.
+    The slope of a flank is e = (180 degrees - angle)/2. On the arc of the tip, the height at x = r sin p is w = r (1 - cos p), from p = 0
+    to p = e; the flank begins at the end of the arc.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "v")
@@ -226,11 +226,11 @@ class Vee(Contour):
 
 @dataclass(frozen=True, eq=False)
 class FreeForm(Contour):
-    """Free-form profile from a table: `heights` added on each side, at `stations` from the middle to an end. The least height is zero.
+    """Free-form profile from a table: `heights` of the cuts at the distances `stations` from the middle. The least height is zero.
 
     Between stations, the profile is a cubic Hermite spline with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984). The
-    spline equals PCHIP for the table and its mirror image: the profile is smooth, and each height is between the heights of the two
-    adjacent stations.
+    spline is the PCHIP interpolation of the table together with its mirror image. The profile is therefore smooth, and each height is
+    between the heights of the two adjacent stations.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "free")
@@ -266,7 +266,7 @@ class FreeForm(Contour):
         return 0.0, *inner, _end_slope(steps, rates)
 
     def pieces(self) -> Iterator[tuple[Number, Number, tuple[Number, Number, Number, Number]]]:
-        """Yield start [m], length [m] and coefficients (constant term first) of each piece, a cubic in the fraction of its length."""
+        """Yield start [m], length [m] and coefficients (constant first) of each cubic piece, a polynomial in (x - start) / length."""
         for (left, right), (low, high), (start, end) in zip(*map(pairwise, (self.stations, self.heights, self.slopes)), strict=True):
             step, change = right - left, high - low
             yield left, step, (low, step * start, 3.0 * change - step * (2.0 * start + end), step * (start + end) - 2.0 * change)
@@ -337,7 +337,7 @@ def rise(profile: Profile) -> Number:
 def closing(profile: Profile, thickness: Number) -> float:
     """Return the angle [rad] of rotation at which the faces of a cut touch, 2 atan(a / (w + t/2)); infinite for a straight profile.
 
-    a is half the hinge's length, w the height of the cuts at the ends, t the `thickness`.
+    Here a is half the hinge's length, w is the height of the cuts at the ends, and t is the `thickness`.
 
     >>> round(closing(Circular(0.005), 0.0) / np.pi, 9), closing(Straight(0.005), 0.001)
     (0.5, inf)

@@ -23,8 +23,8 @@ _ARC = np.linspace(0.0, 0.5 * np.pi, 9)
 class ReinforcedLeaf(Leaf):
     """Leaf spring with a reinforced middle: thin over the `flexure_length` at each end, `reinforced_thickness` between them.
 
-    The step is square, or has a quarter-circle fillet of radius `fillet` at its foot, within the flexure length. The ideal degrees of
-    freedom are the same as for a leaf. No model uses `inner_modes`, `curvature` and
+    The steps in thickness are square, or have a quarter-circle fillet of radius `fillet` at the foot. The fillet is within the flexure
+    length. The ideal degrees of freedom are the same as for a leaf. No model uses `inner_modes`, `curvature` and
     `face_temperature_difference` of a reinforced leaf: they must be absent or zero.
     """
 
@@ -55,7 +55,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: keys of a leaf that no model of a reinforced leaf uses."""
+        """Errors: specified keys of a leaf that no model of a reinforced leaf uses."""
         for name in ("inner_modes", "curvature", "face_temperature_difference"):
             if np.any(getattr(self, name)):
                 yield Finding(name, "not modelled in a reinforced leaf", "Remove it, or use a leaf")

@@ -16,8 +16,8 @@ from flexstage.parts.shape import INNER_MODES, Shaped, reversed_or_none
 class Rod(Shaped):
     """Round rod (wire flexure) of constant diameter, `length` along x. Ideal degrees of freedom: all except translation along x.
 
-    `inner_modes` contains three numbers for the lumped model: bending modes in y, bending modes in z, and torsion modes. `curvature` is the
-    initial curvature about z of the free rod, as for a leaf.
+    The lumped model has `inner_modes` bending modes in y, the same number of bending modes in z, and the same number of torsion modes.
+    `curvature` is the initial curvature about z of the free rod, as for a leaf.
     """
 
     kind: ClassVar[str] = "rod"

@@ -33,11 +33,12 @@ from flexstage.parts.voice_coil import DUTY, Coil, CoilSide, Supply
 
 @dataclass(frozen=True, eq=False)
 class RotaryCoil(Coil):
-    """Rotary voice coil about x: torque = `torque_constant` x current on the second body, the opposite torque on the first.
+    """Rotary voice coil about x. The torque on the second body is `torque_constant` times current; the first body has the opposite torque.
 
-    A positive torque turns the second body in the positive sense about x; a negative `torque_constant` reverses it. `stiffness` is the
-    magnets' stiffness about x, `damping` the coil's damping about x. `angular_travel` is the whole angle over which the torque constant is
-    valid. All other fields have the same meaning as in `VoiceCoil`. The masses are point masses: specify moments of inertia in the bodies.
+    A positive torque turns the second body in the positive sense about x; a negative `torque_constant` reverses the sense. `stiffness` is
+    the magnets' stiffness about x, `damping` the coil's damping about x. `angular_travel` is the whole angle over which the torque constant
+    is valid. All other fields have the same meaning as in `VoiceCoil`. The masses are point masses: specify moments of inertia in the
+    bodies.
     """
 
     kind: ClassVar[str] = "rotary_coil"

@@ -1,6 +1,6 @@
 """Cross-sections of parts: outline, area, second moments, Saint-Venant torsion, warping, shear factors and largest stresses.
 
-Axes of the link frame: x along the part, y along the section's height, z along its width. A section is symmetric about both.
+Axes of the link frame: x along the part, y along the section's height, z along its width. A section is symmetric about y and z.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from flexstage.base.number import Array, Number, magnitude, with_step
 from flexstage.parts.profile import single
 
 PARABOLIC = 6.0 / 5.0
-"""Shear factor k = 6/5 of a rectangle, from the energy of parabolic shear stress (Castigliano), as in the notch formulas."""
+"""Shear factor k = 6/5 of a rectangle, from the strain energy of parabolic shear stress (Castigliano), as in the notch formulas."""
 ROUND = 10.0 / 9.0
-"""Shear factor of a circle from the energy of parabolic shear stress."""
+"""Shear factor of a circle, from the strain energy of parabolic shear stress."""
 _ODD = np.arange(1.0, 8.0, 2.0)
 _ODD_FIFTH_POWERS = 1.00452376279513961613
 """Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
@@ -86,19 +86,19 @@ class Section:
         return np.minimum(self.height, self.width)
 
     def outline(self, angles: Array) -> Array:
-        """Return the corners (n, 2) [m] of the outline, counter-clockwise (first design); for a curve, points at `angles` [rad] from y."""
+        """Return the first design's corners (n, 2) [m], counter-clockwise; for a curved outline, its points at `angles` [rad] from y."""
         raise NotImplementedError
 
     def pieces(self, angles: Array) -> tuple[Array, ...]:
-        """Return convex polygons (n, 2) [m] that form the outline; their number is the same in every design."""
+        """Return convex polygons (n, 2) [m] that form the outline; the number of polygons is the same in every design."""
         return (self.outline(angles),)
 
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
-        """Return an upper bound of normal stress [Pa] for the stress `axial` [Pa] and the bending terms |M_y| / I_y, |M_z| / I_z [Pa/m]."""
+        """Return an upper bound of normal stress [Pa] for the `axial` stress [Pa] and the bending terms |M_y| / I_y, |M_z| / I_z [Pa/m]."""
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the largest shear stress [Pa] of a torque [N m]; Saint-Venant torsion carries the fraction `uniform`, warping the rest."""
+        """Return the largest shear stress [Pa] of a torque [N m]; Saint-Venant torsion carries its fraction `uniform`, warping the rest."""
         raise NotImplementedError
 
     def each(self, function: Callable[[Number], Any]) -> Self:
@@ -137,7 +137,7 @@ class Rectangle(Section):
 
     @cached_property
     def torsion(self) -> Number:
-        """Torsion constant by `rectangle_torsion` [m^4]."""
+        """Torsion constant [m^4], from `rectangle_torsion`."""
         return rectangle_torsion(self.height, self.width)
 
     @cached_property
@@ -151,7 +151,7 @@ class Rectangle(Section):
         return 0.5 * np.array([section.height, section.width]) * [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the Saint-Venant stress in the middle of the longer sides plus the shear stress of strips in bending [Pa]."""
+        """Return the Saint-Venant shear stress in the middle of the longer sides plus the shear stress of strips in bending [Pa]."""
         short, long = np.minimum(self.height, self.width), np.maximum(self.height, self.width)
         ratio = 0.5 * np.pi * (long / short)[..., None] * _ODD
         crest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * np.exp(-ratio) / (1.0 + np.exp(-2.0 * ratio)) / _ODD**2, axis=-1)
@@ -217,8 +217,9 @@ def circle(diameter: Number, shear: Number = ROUND) -> Circle:
 def rectangle_torsion(thickness: Number, width: Number) -> Array:
     """Compute the Saint-Venant torsion constant J [m^4] of a rectangle, exact to rounding error.
 
-    J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / 2a) / n^5), a <= c (Timoshenko & Goodier, Theory of Elasticity,
-    section 109). The sum is (31/32) zeta(5) minus a series in exp(-n pi c / a); after four terms its remainder is below 1e-17.
+    J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / (2 a)) / n^5), with the sides a <= c (Timoshenko & Goodier, Theory
+    of Elasticity, section 109). The sum is (31/32) zeta(5) minus a series in exp(-n pi c / a). The remainder of this series after four
+    terms is below 1e-17.
 
     >>> round(float(rectangle_torsion(1.0, 1.0)), 10), round(float(rectangle_torsion(100.0, 1.0)), 4)
     (0.140577015, 33.1233)

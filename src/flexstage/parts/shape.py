@@ -1,7 +1,7 @@
 """Interface of parts: kind, degrees of freedom and, for parts with a shape, geometry.
 
-Outlines, pictures, contact, buckling and finite elements use only this interface, for any class of part. A new kind of part derives from
-`Shaped`, or from `Profiled` if cuts reduce its thickness towards the middle.
+Outlines, pictures, contact checks, buckling and finite elements use only this interface, for every kind of part. A new kind of part derives
+from `Shaped`, or from `Profiled` if cuts reduce its thickness towards the middle.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Order:
 
 
 INNER_MODES = Bound(0.0, 20.0)
-"""Allowed number of internal modes of a part per degree of freedom."""
+"""Allowed number of internal modes of a part for each degree of freedom."""
 
 
 class Elastic(Description):
@@ -92,7 +92,7 @@ class Elastic(Description):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether the part is axisymmetric, so that its links require no `bends`."""
+        """Whether the part is axisymmetric; links with an axisymmetric part require no `bends`."""
         return True
 
     @property
@@ -102,7 +102,7 @@ class Elastic(Description):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors of the part's values, apart from required inequalities."""
+        """Errors of the part's values, except violated inequalities (see `orders`)."""
         yield from ()
 
 
@@ -115,7 +115,7 @@ class Shaped(Elastic):
     """Part with a shape: x axis along the part, origin at its centre, symmetric about the three coordinate planes.
 
     Each kind of part implements `span` and `throat`. The other properties have defaults for a constant section; `Profiled` parts override
-    these defaults. A `slender` part bends along its whole length: its ends may shift sideways.
+    these defaults. A `slender` part bends along its whole length: one end may shift sideways relative to the other.
     """
 
     material: str
@@ -128,7 +128,7 @@ class Shaped(Elastic):
 
     @property
     def bends_both_ways(self) -> bool:
-        """Whether the part has ideal rotations about both y and z."""
+        """Whether the ideal degrees of freedom of the part include rotations about both y and z."""
         return {Freedom.RY, Freedom.RZ} <= set(self.intended)
 
     @property
@@ -227,7 +227,7 @@ class Profiled(Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Required: fillets, or the arc of a V's tip, fit into the length; the stations of a table increase from the middle."""
+        """Required: the fillets or the arc of a V's tip fit into the length; the stations of a table increase from the middle outwards."""
         if isinstance(self.profile, Filleted):
             advice = "Two fillets require 2 r of the length: increase the length or reduce the radius"
             yield Order("profile.radius", self.profile.radius, 0.5 * self.profile.length, "half the length", advice, strict=False)

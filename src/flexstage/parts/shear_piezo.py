@@ -32,12 +32,12 @@ from flexstage.parts.stated import Stated, point_masses
 
 @dataclass(frozen=True, eq=False)
 class ShearPiezo(ChargedActuator):
-    """Shear piezo actuator: a block of plates along x. The stroke u moves its second face along y relative to the first face.
+    """Shear piezo actuator: a block of plates along x. The stroke u moves the block's second face along y relative to the first face.
 
-    The block has `length` L along x, `width` along y and `depth` along z. `stiffness` k is the stiffness along y with parallel faces,
-    `axial_stiffness` k_a the stiffness along x. `axial_stiffness` and `stiffness` determine Young's modulus E = k_a L / A and the shear
-    compliance 1/k - L^3 / (12 E I_z), with the section's area A and its second moment of area I_z about z. The other stiffness terms are
-    those of a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
+    The block has `length` L along x, `width` along y and `depth` along z. `stiffness` k is the stiffness along y while the faces remain
+    parallel; `axial_stiffness` k_a is the stiffness along x. `axial_stiffness` and `stiffness` determine Young's modulus E = k_a L / A and
+    the shear compliance 1/k - L^3 / (12 E I_z), with the section's area A and its second moment of area I_z about z. The other stiffness
+    terms are those of a uniform block. The blocked force is the product of stroke and stiffness. Half of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"
@@ -61,12 +61,12 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def free_deformation(self) -> Array:
-        """Free deformation (6,) per unit of stroke: along y."""
+        """Free deformation (6,) per unit of stroke: a unit translation along y."""
         return np.eye(6)[1]
 
     @property
     def blocking_force(self) -> Number:
-        """Blocked force along y: stroke x stiffness [N]."""
+        """Blocked force along y [N]: product of stroke and stiffness."""
         return self.stroke * self.stiffness
 
     @property
@@ -82,15 +82,16 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def shear_compliance(self) -> Number:
-        """Shear compliance along y [m/N]: total compliance minus the bending compliance between parallel faces."""
+        """Shear compliance along y [m/N]: total compliance minus the bending compliance, both between parallel faces."""
         return 1.0 / self.stiffness - self.length**3 / (12.0 * self.bending[1])
 
     @property
     def compliance(self) -> Array:
-        """Compliance (..., 6, 6) about the centre: 1/k_a along x, 1/k along y (similarly along z), L/(G J) about x, L/(E I) about y and z.
+        """Compliance (..., 6, 6) about the centre: a diagonal matrix.
 
-        G J and E I are the torsional and bending rigidities. The shear modulus G follows from the shear compliance L / (k_s G A) with k_s =
-        5/6 (parabolic shear stress). Torsion is Saint-Venant's. Both faces remain plane.
+        The entries are 1/k_a along x, 1/k along y, S + L^3 / (12 E I_y) along z, L/(G J) about x, and L/(E I_y) and L/(E I_z) about y and
+        z. G J, E I_y and E I_z are the torsional and bending rigidities. The shear modulus G follows from the shear compliance S = L / (k_s
+        G A) with k_s = 5/6 (parabolic shear stress). Torsion is Saint-Venant torsion. Both faces remain plane.
         """
         about_y, about_z = self.bending
         shear = self.shear_compliance
@@ -101,7 +102,7 @@ class ShearPiezo(ChargedActuator):
         return diagonal[..., None] * np.eye(6)
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Return the stiffness as the inverse of the compliance, and half of the mass at each face."""
+        """Return the stiffness matrix (inverse of the compliance), and the mass matrix with half of the mass at each face."""
         return Stated(np.linalg.inv(self.compliance), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property

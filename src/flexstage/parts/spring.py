@@ -36,12 +36,12 @@ class Spring(Elastic):
     """Spring along x without a drawn shape, with a specified stiffness.
 
     Specify exactly one of `stiffness` along x, `diagonal` (x, y, z, rx, ry, rz), and `matrix`, a symmetric 6x6 stiffness about the centre.
-    With `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must
-    be stable. `free` lists the free degrees of freedom of the ideal model (default: all).
+    With `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (as for magnets), but the whole stage
+    must be stable. `free` lists the free degrees of freedom of the ideal model (default: all).
 
-    With a `length` L, the spring pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, the spring acts at
-    one point. `preload` is the initial force that pushes the ends apart (negative: pulls). With `free_length`, the preload is k
-    (free_length - length). `mass` is uniform over the length.
+    A spring with a `length` L has pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, the spring acts
+    at one point. `preload` is the initial force that pushes the ends apart (negative: pulls them together). With `free_length`, the preload
+    is k (free_length - length), with the stiffness k along x. `mass` is uniform over the length.
     """
 
     kind: ClassVar[str] = "spring"
@@ -84,7 +84,7 @@ class Spring(Elastic):
         return self if self.matrix is None else replace(self, matrix=mirror_rows(self.matrix))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Return the stiffness, and the mass distributed along the length."""
+        """Return the stiffness matrix, and the mass matrix of a uniform mass along the length."""
         return Stated(self.whole, line_mass(self.mass, 0.0 if self.length is None else self.length))
 
     @property
@@ -101,7 +101,7 @@ class Spring(Elastic):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: a stiffness not specified exactly once, an asymmetric matrix, or a preload without a length."""
+        """Errors: no stiffness or several stiffnesses, an asymmetric matrix, two preloads, or a preload without a length."""
         stated = [name for name in ("stiffness", "diagonal", "matrix") if getattr(self, name) is not None]
         if len(stated) != 1:
             what = f"both {' and '.join(stated)} specified" if stated else "stiffness missing"

@@ -30,7 +30,7 @@ class Stated:
 
 
 def point_masses(first: Number, second: Number) -> Array:
-    """Return the mass matrix (..., 12, 12) of point masses [kg] on the two bodies, at a part's centre, without rotary inertia.
+    """Return the mass matrix (..., 12, 12) of point masses [kg] at a part's centre, one on each of its two bodies, without rotary inertia.
 
     >>> point_masses(1.0, 2.0).diagonal().tolist()
     [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 0.0, 0.0, 0.0]
@@ -41,7 +41,7 @@ def point_masses(first: Number, second: Number) -> Array:
 
 
 def halves(inertia: Array) -> Array:
-    """Distribute the inertia (..., 6, 6) of a rigid solid equally to both ends (..., 12, 12).
+    """Distribute the mass matrix (..., 6, 6) of a rigid solid equally to both ends; return the mass matrix (..., 12, 12) of the ends.
 
     >>> halves(4.0 * np.eye(6)).diagonal()[5:7].tolist()
     [2.0, 2.0]
@@ -51,7 +51,7 @@ def halves(inertia: Array) -> Array:
 
 
 def line_mass(mass: Number, length: Number) -> Array:
-    """Compute the consistent mass (..., 12, 12) of a line of uniform mass between its ends, at +-L/2 from the centre.
+    """Compute the consistent mass matrix (..., 12, 12) of a uniform line with its ends at +-L/2 from the centre; L is the length.
 
     The velocity is interpolated linearly between the ends: a line of mass m therefore has m/3 at each end and a coupling of m/6. A spring
     fixed at one end thus adds a third of its mass to its other end.
@@ -75,7 +75,7 @@ def _end(arm: Array) -> Array:
 
 
 def is_even(freedoms: tuple[Freedom, ...]) -> bool:
-    """Return whether the degrees of freedom along and about y equal those along and about z.
+    """Return whether each degree of freedom along or about y has its counterpart along or about z.
 
     >>> is_even((Freedom.RZ,)), is_even((Freedom.RY, Freedom.RZ))
     (False, True)
@@ -134,7 +134,7 @@ def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
     lowest = np.min(np.linalg.eigvalsh(np.real(matrix) / safe[..., :, None] / safe[..., None, :]))
     if not unequal and lowest <= 0.0:
         what = f"not positive definite: the lowest eigenvalue of its scaled form is {lowest:.3g}"
-        yield Finding(where, what, "Check signs and units of its entries; to lock a degree of freedom, use a restricted part, not zero")
+        yield Finding(where, what, "Check signs and units of its entries; use a restricted part (not a zero) to lock a motion")
 
 
 def negative_part(matrix: Array, lengths: Array) -> Array:

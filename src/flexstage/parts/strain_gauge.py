@@ -13,7 +13,7 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True, eq=False)
 class StrainGauge(Instrument):
-    """Strain gauge on a link: elongation between the link's faces, including the free stroke of a stack.
+    """Strain gauge on a link: elongation between the link's faces, including the free stroke if the link is a piezo stack.
 
     All values are elongations, not strains. `range` is the total measuring span [m], `resolution` the quantisation step [m],
     `noise_density` the amplitude density of white noise [m/Hz^0.5], and `bandwidth` the measurement bandwidth [Hz].

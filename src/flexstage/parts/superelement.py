@@ -47,21 +47,22 @@ class MatrixNames(Description):
 
 @dataclass(frozen=True, eq=False)
 class Superelement(Elastic):
-    """Superelement: stiffness K and mass M for the twists of its `ports` and for internal coordinates, from files in `units`.
+    """Superelement: its stiffness matrix K and mass matrix M, in `units`, are read from files.
 
-    Either `file` is a MAT or NPZ file with both matrices (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files.
-    A viscous damping matrix D is optional (`arrays`, or `damping_file`). Coordinates that do not belong to a port are internal: nodal
-    degrees of freedom or modal amplitudes. `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass,
-    damping). The digest identifies the version of the matrices, and caches use the digest instead of the matrices. A relative path is
-    relative to the design file.
+    The coordinates of the matrices are the twists of the `ports` and internal coordinates. Either `file` is a MAT or NPZ file with both
+    matrices (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files. A viscous damping matrix D is optional
+    (`arrays`, or `damping_file`). Coordinates that do not belong to a port are internal: nodal degrees of freedom or modal amplitudes.
+    `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass, damping). The digest identifies the version
+    of the matrices, and caches use the digest instead of the matrices. A relative path is relative to the design file.
 
     The internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA Journal 6, 1313, 1968). The reduction to modes
-    preserves statics and total mass. The model keeps a number of `modes` (0: Guyan condensation, AIAA Journal 3, 380, 1965) or the modes
-    `below` a frequency; by default, it keeps all modes.
+    preserves statics and total mass. `modes` limits the number of retained modes (0: Guyan condensation, AIAA Journal 3, 380, 1965), and
+    `below` limits their frequencies. By default, the model keeps all modes.
 
-    `mass`, `centre` of mass and `inertia` about this centre, in the part's axes, are compared with the matrices. `loss_factor` is the loss
-    factor of the stiffness. If `reflected`, the part is the mirror image of the file's part in the x-z plane; `ports`, `mass`, `centre` and
-    `inertia` describe the mirror image. The model is linear: small motions, no buckling, unknown thermal expansion.
+    `mass`, `centre` of mass and `inertia` about this centre are specified in the part's axes and compared with the matrices. `loss_factor`
+    is the loss factor of the stiffness. If `reflected`, the part is the mirror image of the file's part in the x-z plane; `ports`, `mass`,
+    `centre` and `inertia` describe the mirror image. The model is linear (small motions, no buckling), and its thermal expansion is
+    unknown.
     """
 
     kind: ClassVar[str] = "superelement"
@@ -84,7 +85,7 @@ class Superelement(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom: none, as for a rigid body; a link may specify free degrees of freedom."""
+        """Ideal degrees of freedom: none, as for a rigid body, but a link may specify free degrees of freedom."""
         return ()
 
     @property

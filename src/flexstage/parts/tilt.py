@@ -14,7 +14,7 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True, eq=False)
 class Tilt(Instrument):
-    """Tilt gauge: right-handed rotation of a body about the gauge's x axis, independent of position.
+    """Tilt gauge: right-handed rotation of a body about the gauge's x axis. The gauge's position has no effect.
 
     `range` is the total measuring span [rad], `resolution` the quantisation step [rad], `noise_density` the amplitude density of white
     noise [rad/Hz^0.5], and `bandwidth` the measurement bandwidth [Hz].

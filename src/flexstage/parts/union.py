@@ -2,10 +2,10 @@
 
 The mass of the union follows from the intersections of the solids by inclusion and exclusion. Each solid is its outer form minus its hole.
 An intersection can be computed for prisms along one common axis: blocks along any edge, extrusions along their height, cylinders along
-their axis. It can also be computed for balls within the section of a prism.
+their axis. An intersection can also be computed for balls that are within the section of a prism.
 
-The section of an intersection is a polygon clipped by half-planes. Its moments are line integrals (Green's theorem): closed formulas, valid
-for batches and complex steps. Other overlaps raise an error.
+The section of an intersection is a polygon clipped by half-planes. The moments of the polygon are line integrals (Green's theorem): closed
+formulas, valid for batches and complex steps. All other overlaps of solids raise an error.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from flexstage.spatial.convex import Boxes, Convex, separation, separations
 from flexstage.spatial.frame import Frame
 
 _FLUSH = 1e-9
-"""Distance of coincident faces relative to the solids' size."""
+"""Largest distance of coincident faces, relative to the size of the solids."""
 _ROUNDING = 1e-14
 """Tolerance of points on a line relative to their size."""
 _MOST = 2000
@@ -53,7 +53,7 @@ class Drawn:
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Moments of a region: volume (...) [m^3], first moment (..., 3) [m^4] and second moment (..., 3, 3) [m^5].
+    """Moments of a region: its volume (...) [m^3], first moment (..., 3) [m^4] and second moment (..., 3, 3) [m^5].
 
     The moments are the integrals of 1, r and r r^T over the volume, for the position r. For a plane region they are the area (...) [m^2],
     the first moment (..., 2) [m^3] and the second moment (..., 2, 2) [m^4].
@@ -100,11 +100,11 @@ class _Prism:
 
 
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
-    """Yield densities and moments to be added to those of a body's solids, so that common volumes count only once.
+    """Yield densities and moments to add to the moments of a body's solids, so that common volumes count only once.
 
-    A subtracted solid removes its intersection with other solids of the same material: the moments of the rest are those of the union of
-    both, less the subtracted solid. Raises `DesignError` if a common volume cannot be computed: if materials differ, or if shapes are not
-    prisms along one axis.
+    A subtracted solid removes its intersection with other solids of the same material. The moments of the rest are those of the union of
+    all these solids and the subtracted solid, minus those of the subtracted solid. Raises `DesignError` if a common volume cannot be
+    computed: if materials differ, or if shapes are not prisms along one axis.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity
@@ -304,7 +304,7 @@ def _extruded(section: Moments, low: Array, high: Array) -> Moments:
 
 
 def polygon_moments(corners: Array, height: Array) -> Moments:
-    """Compute by Green's theorem the moments of a prism of this `height` with a counter-clockwise polygon (..., n, 2) as mid-plane.
+    """Compute the moments of a prism of this `height` by Green's theorem; its mid-plane is a counter-clockwise polygon (..., n, 2).
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> float(polygon_moments(square, np.asarray(2.0)).volume)

@@ -39,14 +39,14 @@ DUTY = Bound(low=0.0, high=1.0, open_low=True)
 
 
 class Supply(Enum):
-    """Drive of the coil: a current amplifier, or a voltage amplifier, with a back-EMF in proportion to the coil's velocity."""
+    """Drive of the coil: a current amplifier, or a voltage amplifier; with a voltage amplifier, back-EMF adds damping."""
 
     CURRENT = "current"
     VOLTAGE = "voltage"
 
 
 class CoilSide(Enum):
-    """Body of a link that has the coil: the first or the second of its `joins`."""
+    """Body on which the coil is: the first or the second body in the `joins` of the link."""
 
     FIRST = "first"
     SECOND = "second"
@@ -97,7 +97,7 @@ class Coil(ThrustActuator):
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
-        """Current limits, each for continuous and for short use."""
+        """Limits of the current, each for continuous and for short use."""
         yield ForceLimit("peak current", self.peak_current, self.peak_current)
         rested = self.duty**-0.5
         if self.continuous_current is not None:
@@ -122,7 +122,7 @@ class Coil(ThrustActuator):
         return self.resistance / (2.0 * np.pi * self.inductance)
 
     def slew(self, limit: Number) -> Number | None:
-        """Return the slew rate (V - R i / 2) / L [A/s] at the mean current from zero to a `limit` i, without back-EMF.
+        """Return the slew rate (V - R i / 2) / L [A/s] at half of the current `limit` i, without back-EMF; None without V or L.
 
         >>> VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, voltage=24.0).slew(2.0)
         18000.0
@@ -156,7 +156,7 @@ class Coil(ThrustActuator):
 
     @property
     def heat_current(self) -> Number | None:
-        """Direct current [A] whose heat i^2 R reaches the limit of temperature rise; None if a value is missing.
+        """Direct current i [A] at which the heat i^2 R causes the largest permitted temperature rise; None if a value is missing.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).heat_current
         2.0
@@ -182,20 +182,21 @@ class Coil(ThrustActuator):
 
 @dataclass(frozen=True, eq=False)
 class VoiceCoil(Coil):
-    """Voice coil along x: force = `force_constant` x current between two bodies. A positive force pushes the bodies apart.
+    """Voice coil along x. The force between two bodies is `force_constant` times the current; a positive force pushes the bodies apart.
 
     `mass` is the coil's mass, on the body selected by `coil`; `magnet_mass` is the magnet's mass, on the other body. Both masses are point
-    masses at the link's centre. `stiffness` is the magnets' stiffness along x (negative: unstable about the middle). `damping` is the
-    coil's damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R, with the force constant k_f
-    and the resistance R. `travel` is the range of motion along x with a constant `force_constant`, half of the range on each side of the
-    middle.
+    masses at the link's centre. `stiffness` is the magnets' stiffness along x (negative: the middle position is unstable). `damping` is the
+    coil's damping, caused by eddy currents in its bobbin. With `drive` "voltage", back-EMF adds the damping k_f^2 / R, with the force
+    constant k_f and the resistance R. `travel` is the range of motion along x over which `force_constant` is constant; half of the range is
+    on each side of the middle.
 
     `temperature_rise` is the largest permitted temperature difference between coil and surroundings; `thermal_resistance` is the thermal
-    resistance between them. `duty` is the duty cycle of the current in short use. The input is the static current, which is V/R for a
-    voltage drive.
+    resistance between them. `duty` is the duty cycle of the current in short use: the permitted short-time current is the continuous limit
+    divided by the square root of `duty`. The input is the static (steady-state) current. With a voltage drive, the voltage V causes the
+    static current V/R.
 
-    The model neglects saturation, the change of R with temperature, and the current lag L/R of a voltage drive (significant above R / (2 pi
-    L)).
+    The model neglects saturation, the change of R with temperature, and the lag of the current with a voltage drive. This lag has the time
+    constant L/R, with the inductance L, and is significant above the frequency R / (2 pi L).
     """
 
     kind: ClassVar[str] = "voice_coil"

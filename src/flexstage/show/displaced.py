@@ -48,7 +48,7 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
 def stroke_tables(found: Stroke) -> list[Table]:
     """Tabulate the results at every point of a stroke, and the static deflection at its start, if any."""
     start = "static equilibrium" if found.sag is not None else "the undeformed configuration"
-    free = "f1 to f3 and the number of unstable modes are computed with the drive coordinate free, under the drive force."
+    free = "The frequencies f1 to f3 and the number of unstable modes are computed with the drive coordinate free, under the drive force."
     words = f"Displacements are relative to {start}. {free} The stress is the largest von Mises stress of all flexures."
     table = along_table(f"Along {found.drive}", found.along, [words])
     sag = [] if found.sag is None else [matrix_table("Static deflection under weight, loads and temperature change", found.sag)]
@@ -66,7 +66,7 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
 
 
 def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBuckling | None = None) -> str:
-    """Write an HTML page on buckling in all load cases: the buckling modes at the last stable states, the lowest factor first.
+    """Write an HTML page on buckling: the mode of each load case at its last stable state, the lowest factor first.
 
     `after` is the post-buckling path of the load case with the lowest factor.
     """
@@ -166,7 +166,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
         section("Instance by instance", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
         caveat_section(mechanism, found.warnings),
-        None if worst is None else section("The most critical sample at each equilibrium", misaligned_tables(worst)),
+        None if worst is None else section("The most critical instance, point by point", misaligned_tables(worst)),
     ]
     data, said = (still_data(mechanism), "") if worst is None else (misalign_data(mechanism, worst), _BENT)
     provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"
@@ -176,7 +176,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
 
 
 def misalignments_text(found: Misalignments) -> str:
-    """Describe the number of misaligned instances, and the one that buckles first."""
+    """Describe the number of misaligned instances, and the instance that buckles first."""
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
         return "no instance and no link is connected to the ground"

@@ -1,6 +1,6 @@
 """Units and format of numbers in tables and reports. JSON documents keep SI units.
 
-The preferred display unit is replaced only if the numbers would be unreadable (all below 0.1, or above 100 000).
+The preferred display unit is replaced only if the numbers would be unreadable (the largest number below 0.1, or 100 000 and more).
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def _factor(name: str, unit: str) -> float:
 
 
 def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit:
-    """Return the display unit of an SI unit for values up to `largest` [SI]: the first of `shown` for the same quantity, else the best.
+    """Return the display unit of an SI unit for values up to `largest`: the first unit in `shown` that fits, otherwise a readable unit.
 
     >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')

@@ -116,7 +116,7 @@ def stiffness_body(
     mass: MassMatrix | None = None,
     missing: Mapping[str, str] | None = None,
 ) -> SideBySide:
-    """Return the JSON body of statics, mass, deflection under permanent load, and stiffness by DOF for fewer than six ideal motions."""
+    """Return the JSON body of statics, mass, deflection under permanent load and, with fewer than six ideal motions, stiffness by DOF."""
     reasons = {} if freedoms is not None else {"freedoms": (missing or {}).get("freedoms", _UNSORTED)}
     reasons |= {} if deflection is not None else {"dead_load": _UNLUMPED}
     return SideBySide((statics, {"freedoms": freedoms, "mass": mass, "dead_load": deflection, "reasons": reasons}))

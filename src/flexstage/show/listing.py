@@ -36,7 +36,7 @@ def parameter_table(name: str) -> Table | None:
 
 
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
-    """Tabulate the materials, actuators and sensors of a catalogue, with numbers as in a design file, and sources.
+    """Tabulate the materials, actuators and sensors of a catalogue, with values as written in a design file, and with sources.
 
     >>> from flexstage.mechanism.catalogue import Catalogue
     >>> catalogue_tables(Catalogue((), {}).extended({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]

@@ -90,7 +90,7 @@ def _words(value: Any) -> str:
 
 
 def mat_variables(analysis: Analysis) -> dict[str, Any]:
-    """Return the variables of the MATLAB file: mappings R_a and R_s; for elastic models also K, M, B, C, D, frequencies and state space.
+    """Return the variables of the MATLAB file: mappings R_a (actuators) and R_s (gauges); for elastic models also matrices and state space.
 
     The model is M q'' + K q = B u, y = C q + D u in SI units, with the coordinates q, inputs u and outputs y. Variables that do not exist
     for the model or the stage are left out, with the reason in `notes`. Names and units of rows and columns are in cell arrays.

@@ -76,7 +76,7 @@ _LINES, _WIDTH, _NAMES = 25, 100, 8
 
 
 def to_text(value: Any) -> str:
-    """Format the tables of a result, or the sizes of its fields, in at most 25 lines of text.
+    """Format the tables of a result or, without tables, a summary of its fields, in at most 25 lines of text.
 
     >>> import flexstage as fs
     >>> print(fs.ideal(fs.case("parallelogram")))  # doctest: +ELLIPSIS
@@ -122,4 +122,4 @@ def _picture(mechanism: Mechanism) -> str:
         picture = stage_picture(still_data(mechanism))
     except DesignError as error:
         return "".join(str(render.templates().prose(Prose(str(finding)))) for finding in error.findings)
-    return to_svg(picture, f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")
+    return to_svg(picture, f"stage{digest(mechanism)[:12]}", f"{mechanism.name} seen obliquely from above")

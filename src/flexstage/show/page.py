@@ -27,7 +27,7 @@ class Prose:
 
 @dataclass(frozen=True)
 class Picture:
-    """An SVG element with a caption (plain text). `plays` names the motion that it shows, as in the page's viewer ("mode 1").
+    """An SVG element with a caption (plain text). `plays` names the shown motion as the page's viewer does ("mode 1").
 
     `reading` is the data for the cursor over the picture, from `show.figures.reading`.
     """
@@ -112,7 +112,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """The summary of a page in one line. `good` is true if the requirements are met, false if not, and `None` without requirements."""
+    """The summary of a page in one line. `good` is true if the requirements are met, false if not, `None` if there are no requirements."""
 
     text: str
     good: bool | None = None
@@ -120,7 +120,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class Head:
-    """The head of a page: title, kind of page and headline. `origin` contains name and value of the sources listed at the page's end."""
+    """The head of a page: title, kind of page and headline. `origin` contains name and value of each source listed at the page's end."""
 
     title: str
     kind: str
@@ -151,8 +151,8 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
 def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
     """Write the HTML page with the sections that are not `None`. Texts are escaped; SVG is inserted unchanged.
 
-    `stages` maps the keys of the page's viewers to their data. The content security policy permits only scripts in the page, and no loading
-    of other files.
+    `stages` maps the keys of the page's viewers to their data. The content security policy permits only the scripts in the page, and
+    forbids loading other files.
 
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True

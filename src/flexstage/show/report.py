@@ -24,10 +24,11 @@ from flexstage.show.viewer.motions import Group
 
 @check_arguments
 def report(analysis: Analysis, compared: Comparison | None = None) -> str:
-    """Write the analysis of a stage as a self-contained HTML page: verdict and stage first, no date.
+    """Write the analysis of a stage as a self-contained HTML page without a date, which begins with the verdict and the stage.
 
-    With `compared`, the changed values and their effects follow the requirements, in columns old, new and change. Results that the model
-    or the stage does not have are left out, with the reasons under "Limits". For a batch, the first design is shown.
+    With `compared`, a section after the requirements lists the changed values and their effects, in columns old, new and change. Results
+    that are not available for the model or the stage are left out; the section "Limits" contains the reasons. For a batch, the first design
+    is shown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

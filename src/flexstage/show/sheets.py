@@ -19,11 +19,12 @@ _FORMULA = ("=", "+", "-", "@")
 
 @check_arguments
 def to_csv(result: Any) -> dict[str, str]:
-    r"""Return every part of a result as CSV (RFC 4180), by the part's path in the document, with SI units in the column heads.
+    r"""Return the parts of a result as CSV texts (RFC 4180). The keys are the paths of the parts in the JSON document.
 
-    The first columns are names. Numbers are not rounded; an unknown number is an empty cell. Texts that a spreadsheet would execute as
-    formulas (they start with `=`, `+`, `-` or `@`) begin with an apostrophe. If a column of a matrix has no common unit, the units are in a
-    column `unit`. If neither all columns nor all rows have common units, each entry of the matrix is a row with its unit.
+    The first columns contain the names of the rows; column heads contain SI units. Numbers are not rounded; an unknown number is an empty
+    cell. Texts that a spreadsheet would execute as formulas (they start with `=`, `+`, `-` or `@`) begin with an apostrophe. If only the
+    entries in each row of a matrix have a common unit, a column `unit` contains the units of the rows. If neither the columns nor the rows
+    have common units, each entry of the matrix becomes a row with its unit.
 
     >>> to_csv({"gain": 2.0, "loss": {"B1": 0.1}})
     {'': 'gain\r\n2.0\r\n', 'loss': 'name,loss\r\nB1,0.1\r\n'}
@@ -51,7 +52,7 @@ class Grid:
 def grid_of(part: Sheet | Matrix) -> Grid:
     """Convert a part of a result to a grid.
 
-    If every column of a matrix has one unit, the grid's `units` contain it; if every row has one unit, a column of units is added.
+    If every column of a matrix has one unit, the grid's `units` are these units; if every row has one unit, a column of units is added.
     Otherwise, each entry becomes a row with its unit.
 
     >>> import numpy as np
@@ -93,9 +94,9 @@ def _cell(value: Any) -> Any:
 
 @check_arguments
 def to_pandas(result: Any) -> dict[str, Any]:
-    """Return every part of a result as a pandas frame, by the part's path in the document. Needs the extra `tables`.
+    """Return the parts of a result as pandas data frames. The keys are the paths of the parts in the JSON document.
 
-    Row names are the index. Units are in the names of columns; units of matrices are in `attrs["unit"]`.
+    Row names are the index. Column names contain the units; the data frame of a matrix has no units. Needs the extra `tables`.
     """
     return {path: part.to_pandas() if isinstance(part, Matrix) else _frame(part) for path, part in parts(result)}
 
@@ -109,8 +110,9 @@ def _frame(sheet: Sheet) -> Any:
 
 @check_arguments
 def to_xarray(result: Any) -> dict[str, Any]:
-    """Return every part of a result as xarray, by the part's path in the document. Needs the extra `tables`.
+    """Return the parts of a result as xarray objects. The keys are the paths of the parts in the JSON document.
 
-    A matrix becomes an array; any other part becomes a dataset. The names of the rows are the coordinates of a dimension.
+    A matrix becomes a data array; any other part becomes a dataset. The names of the rows are the coordinates of a dimension. Needs the
+    extra `tables`.
     """
     return {path: part.to_xarray() if isinstance(part, Matrix) else _frame(part).to_xarray() for path, part in parts(result)}

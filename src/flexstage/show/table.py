@@ -141,8 +141,8 @@ def row_table(
     `source` is a single record, or a mapping or sequence of records of one class. A record that contains a labelled matrix, or arrays
     marked with `Along`, has one row for each name along their first axis. `fields` are the shown fields in sequence; by default, all fields
     whose values fit into cells. The head of a column is the field's `Heading`, or otherwise the field's name and unit. `head` is the head
-    of the column of names; for two such columns it contains both heads, for example `path, axis`. Values outside a field's `Bound` are
-    marked.
+    of the column of names; for two columns of names, it contains both heads separated by a comma, for example `path, axis`. Values outside
+    a field's `Bound` are marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -207,7 +207,7 @@ def _columns_at(records: Sequence[Any], path: str, counts: Sequence[int], names:
 
 
 def merge_rows(table: Table) -> Table:
-    """Merge rows with equal cells into one row with all names. Links of several instances must also have equal names in their units.
+    """Merge rows that differ only in the name into one row with all names. For links of instances, the names in the unit must be equal.
 
     >>> merge_rows(make_table("", ["link", "free"], [("B1/tip", "rz"), ("B1/foot", "rz"), ("B2/tip", "rz")])).texts()[1:]
     [['tip (B1, B2)', 'rz'], ['B1/foot', 'rz']]
@@ -255,7 +255,7 @@ def _columns_table(title: str, columns: Sequence[_ColumnCells], notes: Iterable[
 def array_table(
     title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = MappingProxyType({}), notes: Iterable[str] = ()
 ) -> Table:
-    """Make a table with arrays of a record as columns. `names` contains the columns of row names, each with its head as key."""
+    """Make a table with arrays of a record as columns. `names` maps the head of each column of row names to the names."""
     columns = (field_column(field, list(values)) for field, values in (field_at(record, name) for name in fields))
     return _columns_table(title, [*(_name_column(*each) for each in names.items()), *columns], notes)
 
@@ -268,7 +268,7 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
 
 
 def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table | None:
-    """Make the table of a result, or of results in a sequence or by name, with the layout `TABLE` of its class.
+    """Make the table of a result, or of a sequence or mapping of results, with the layout `TABLE` of their class.
 
     `fields` and `title` replace the fields and title of `TABLE`. Returns `None` if there are no rows.
 
@@ -413,8 +413,8 @@ def interval_text(low: float, high: float) -> str:
 def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, heading: Heading = _PLAIN) -> Iterator[_ColumnCells]:
     """Make the columns of a labelled matrix (first design of a batch).
 
-    Numbers of a column with a common SI unit have a common display unit; otherwise each number has its own. A column with the name of one
-    of `fields` gets the heading and bound of that field; other columns get `heading`.
+    Numbers of a column with a common SI unit have a common display unit; otherwise each number has its own display unit. A column with the
+    name of one of `fields` gets the heading and bound of that field; other columns get `heading`.
 
     >>> [cells[0].text for _, cells in matrix_columns(Matrix(np.array([[2e-6], [1e-3]]), ("x", "rx"), ("low",), (("m",), ("rad",))))]
     ['2 um']

@@ -1,4 +1,4 @@
-"""Results as an Excel workbook (XLSX) in SI units: a sheet for each part (see `base.storage.sheet`), and one for the source."""
+"""Results as an Excel workbook (XLSX) in SI units: a sheet for each part (see `base.storage.sheet`), and a sheet for the source."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone
 
 @check_arguments
 def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
-    """Convert a result to the bytes of an XLSX file, with a sheet for each part: heads, SI units below heads, then names and numbers.
+    """Convert a result to the bytes of an XLSX file, with a sheet for each part: column heads, SI units, then rows of numbers.
 
     Numbers have 16 digits. Unknown values are empty cells; infinity and numbers too large for a cell (1e308) are texts. The last sheet
     lists the source: the version of flexstage and the entries of `about`. Equal results give identical files. Raises `DesignError` for
@@ -94,7 +94,7 @@ def _about(result: Any, about: Mapping[str, Any]) -> Grid:
     own = getattr(result, PROVENANCE, None)
     entries = {
         "flexstage": __version__,
-        "units": "SI units, below the heads or in them",
+        "units": "SI units; they are below the heads or in the heads",
         **about,
         **({PROVENANCE: own} if own else {}),
     }

@@ -82,10 +82,10 @@ def _unit(vectors: Array) -> Array:
 
 
 def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
-    """Return the largest gap [m] between two polytopes over all directions, its direction, and the second largest gap.
+    """Return the largest gap [m] between two polytopes over face normals and edge products, its direction, and the second largest gap.
 
     The unit direction points from the first to the second polytope; a negative gap is the penetration depth. The gap is exact for polytopes
-    that intersect; for others, it is a lower bound of the distance.
+    that intersect. For polytopes that do not intersect, it is a lower bound of the distance.
 
     >>> gap, direction, other = separation(cuboid((0, 0, 0), (1, 1, 1)), cuboid((0.9, 0.2, 0.0), (2, 1, 1)))
     >>> round(gap, 9), direction.tolist(), round(other, 9)
@@ -141,7 +141,7 @@ def distance(first: Array, second: Array) -> float:
 
 
 def separations(ones: Boxes, others: Boxes) -> Array:
-    """Compute lower bounds (k,) [m] of the distances between k boxes and k other boxes, pair by pair; negative if they intersect.
+    """Compute lower bounds (k,) [m] of the distances between k boxes and k other boxes, pair by pair; negative for boxes that intersect.
 
     A rotation matrix common to all boxes has shape (1, 3, 3).
 

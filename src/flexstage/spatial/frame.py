@@ -50,7 +50,7 @@ class Frame:
 
     @property
     def right_handed(self) -> Frame:
-        """The frame itself if it is right-handed; otherwise the frame with its y axis reversed.
+        """The frame itself if it is right-handed; otherwise the frame with reversed y axis.
 
         >>> reflection(0).right_handed.rotation.diagonal().tolist()
         [-1.0, -1.0, 1.0]
@@ -114,7 +114,7 @@ def transport(arm: Array) -> Array:
 
 
 def mirror(axis: int) -> Array:
-    """Build the 6x6 matrix that mirrors a twist in the plane through the origin normal to an axis (0, 1, 2).
+    """Build the 6x6 matrix that mirrors a twist in the plane that contains the origin and is normal to an axis (0, 1, 2).
 
     The mirror reverses the translation along the axis and the rotations about the two other axes.
 
@@ -164,7 +164,7 @@ def turn_z(angle: Number) -> Array:
 
 
 def normalise(vector: Array) -> Array:
-    """Normalise a vector (..., 3) to unit length, without conjugation of complex numbers, so that complex steps remain valid.
+    """Normalise a vector (..., 3) to unit length. Complex numbers are not conjugated, so that complex steps remain valid.
 
     >>> normalise(np.array([3.0, 0.0, 4.0])).tolist()
     [0.6, 0.0, 0.8]
@@ -175,7 +175,8 @@ def normalise(vector: Array) -> Array:
 def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
     """Build the rotation matrix with the x axis `along` and the z axis `up`. Vectors are normalised; z is made perpendicular to x.
 
-    Without `up`, z is the stage's z axis made perpendicular to x, or its y axis if `along` is within 5 degrees of z.
+    Without `up`, z is the stage's z axis, made perpendicular to x. If `along` is within 5 degrees of the stage's z axis, its y axis is used
+    instead.
 
     >>> axes((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)).tolist()
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -194,7 +195,7 @@ def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
 def rigid_inertia(mass: Number, inertia: Array, centre: Array, reference: Array) -> Array:
     """Build the 6x6 inertia of a rigid body for its twist at `reference`; `inertia` (..., 3, 3) is about the centre of mass `centre` [SI].
 
-    M = X^T diag(m I, J) X with X the transport from the reference to the centre of mass.
+    The result is X^T diag(m I, J) X, with the mass m, the inertia J, and the transport X from the reference to the centre of mass.
 
     >>> rigid_inertia(2.0, np.eye(3), np.zeros(3), np.zeros(3)).diagonal().tolist()
     [2.0, 2.0, 2.0, 1.0, 1.0, 1.0]

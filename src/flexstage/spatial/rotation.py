@@ -18,7 +18,7 @@ _SMALL = 1e-4
 def exponential(vector: Array) -> Array:
     """Compute the rotation matrix (..., 3, 3) of a rotation vector (..., 3) [rad] (Rodrigues' formula).
 
-    R = I + sin t/t [v]x + (1 - cos t)/t^2 [v]x^2, with the angle t = |v| and the cross-product matrix [v]x.
+    R = I + (sin t / t) [v]x + ((1 - cos t) / t^2) [v]x^2, with the angle t = |v| and the cross-product matrix [v]x.
 
     >>> exponential(np.array([0.0, 0.0, np.pi / 2])).round(12).tolist()
     [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
@@ -79,7 +79,7 @@ def rotation_vector(rotation: Array) -> Array:
 def logarithm_rate(vector: Array) -> Array:
     """Compute the inverse left Jacobian J (..., 3, 3) of SO(3): log(exp(w) R) = v + J w for small w, where v = log R.
 
-    J = I - [v]x / 2 + (1 - (t/2) cot(t/2)) / t^2 [v]x^2, with the angle t = |v| and the cross-product matrix [v]x (Chirikjian, Stochastic
+    J = I - [v]x / 2 + ((1 - (t/2) cot(t/2)) / t^2) [v]x^2, with the angle t = |v| and the cross-product matrix [v]x (Chirikjian, Stochastic
     Models, Information Theory, and Lie Groups 2, 10.86).
 
     >>> logarithm_rate(np.zeros(3)).tolist() == np.eye(3).tolist()
@@ -97,7 +97,8 @@ def logarithm_rate(vector: Array) -> Array:
 def exponential_rate(vector: Array) -> Array:
     """Compute the left Jacobian T (..., 3, 3) of SO(3): exp(v + d) = exp(T d) exp(v) for small d; the inverse of `logarithm_rate`.
 
-    T = I + (1 - cos t)/t^2 [v]x + (t - sin t)/t^3 [v]x^2, with the angle t = |v| and the cross-product matrix [v]x (Chirikjian 2, 10.86).
+    T = I + ((1 - cos t) / t^2) [v]x + ((t - sin t) / t^3) [v]x^2, with the angle t = |v| and the cross-product matrix [v]x (Chirikjian 2,
+    10.86).
 
     >>> exponential_rate(np.zeros(3)).tolist() == np.eye(3).tolist()
     True
@@ -121,7 +122,8 @@ def magnus(step: Array, first: Array, middle: Array, last: Array) -> Array:
     """Compute the rotation vector W (..., 3) [rad] of one integration step of R' = R [k]x: R becomes R exp(W).
 
     `step` (...) is the step length. The rotation rate k (..., 3) is given at the three Gauss points `first`, `middle`, `last`. The method
-    is of order 6 (Blanes, Casas, Oteo and Ros, Physics Reports 470, 2009, 5.2; for their Y' = A Y, the signs of all brackets are opposite).
+    is of order 6 (Blanes, Casas, Oteo and Ros, Physics Reports 470, 2009, 5.2; that paper treats Y' = A Y, for which the signs of all
+    brackets are opposite).
 
     >>> magnus(np.array(2.0), *np.tile([0.1, 0.0, 0.3], (3, 1))).round(12).tolist()
     [0.2, 0.0, 0.6]

@@ -1,4 +1,4 @@
-"""The fields of each section of a study's file. The reader and the schema are generated from them."""
+"""The fields of each section of a study's file. The reader and the schema are generated from these fields."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COPIES_BY = (Sampling.MONTE_CARLO, Sampling.LATIN_HYPERCUBE, Sampling.SOBOL)
 
 Amount = Annotated[str | float, AmountNode()]
 Texts = Annotated[tuple[str, ...], TextsNode()]
-Parameters = Annotated[Mapping[str, Any], OpenNode("Parameters of the case with new values, by name.")]
+Parameters = Annotated[Mapping[str, Any], OpenNode("New values of the case's parameters, by name.")]
 
 _ONE, _TWO, _THREE = Bound(low=1.0), Bound(low=2.0), Bound(low=3.0)
 _SEED = Bound(low=0.0)
@@ -34,9 +34,10 @@ _YIELD = Bound(low=0.5, high=1.0, open_low=True, open_high=True)
 class VariedTable:
     """A variable of a study: one or several numbers of the design (`address`), or parameters of the case (`parameter`).
 
-    Several numbers change together. Without `address` and `parameter`, the variable's name is the address. `from` and `to` are the ends of
-    the range, with units or in percent of the design's value. `logarithmic`: values are spaced by equal ratios. `levels`: number of values
-    in a grid. `step`: manufacturing increment; rounded values are multiples of it.
+    If a variable has several numbers, they change together. Without `address` and `parameter`, the variable's name is the address. `from`
+    and `to` are the ends of the range, with units or in percent of the design's value. If `logarithmic` is true, values are spaced by equal
+    ratios. `levels` is the number of values in a grid. `step` is the manufacturing increment; rounded values are multiples of this
+    increment.
     """
 
     low: Amount = field(metadata={KEY: "from"})
@@ -52,8 +53,8 @@ class VariedTable:
 class SweepTable:
     """Sampling of designs: kind of `sampling`, number of `designs`, random `seed`.
 
-    The default number of designs is 1024; in a grid, it follows from the levels of the variables. `pairs`: Saltelli's plan also provides
-    second-order indices.
+    The default number of designs is 1024; for a grid, the levels of the variables define the number. If `pairs` is true, Saltelli's plan
+    also provides second-order Sobol indices.
     """
 
     sampling: Sampling = Sampling.SOBOL
@@ -66,8 +67,8 @@ class SweepTable:
 class OptimiseTable:
     """Objectives: responses to `maximise` or `minimise`. With two objectives, a Pareto front of `pareto_points` designs is computed.
 
-    `starts` is the number of initial designs, chosen with the random `seed`. `requirements`: the requirements of the design file are also
-    limits.
+    `starts` is the number of initial designs, chosen with the random `seed`. If `requirements` is true, the requirements of the design file
+    are also limits.
     """
 
     maximise: Texts | None = None
@@ -80,12 +81,12 @@ class OptimiseTable:
 
 @dataclass(frozen=True)
 class ScatterTable:
-    """Scatter of numbers of the same quantity, at one or several addresses (`address`). By default, the entry's name is the address.
+    """Scatter of numbers of one physical quantity, at one or several addresses (`address`). By default, the entry's name is the address.
 
     The distribution is normal with the standard deviation `normal`, or uniform with the half width `uniform`. `normal` and `uniform` have a
-    unit or are in percent of the design's value. `within` truncates a normal distribution. `interval` is an asymmetric tolerance (lower,
-    upper) with a uniform distribution. If `normal` is also specified, the distribution is normal about the middle of the interval and
-    truncated at its ends. `independent`: every instance has its own deviation.
+    unit or are in percent of the design's value. `within` is the deviation at which a normal distribution is truncated. `interval` is an
+    asymmetric tolerance (lower, upper) with a uniform distribution. If `normal` is also specified, the distribution is normal about the
+    middle of the interval and truncated at its ends. If `independent` is true, every instance has its own deviation.
     """
 
     address: Texts | None = None
@@ -100,8 +101,8 @@ class ScatterTable:
 class ToleranceTable:
     """Number of `copies` (samples), their `sampling` and `seed`, and the required `yield` of each requirement.
 
-    `requirements`: the requirements of the design file are included. `crosstalk`: compute the platform's crosstalk at a `point` (by
-    default, if the strokes determine the platform's pose).
+    If `requirements` is true, the requirements of the design file are included. If `crosstalk` is true, the platform's crosstalk at the
+    `point` is computed. By default, crosstalk is computed if the strokes determine the platform's pose.
     """
 
     copies: Annotated[int, _TWO] = 1024
@@ -117,8 +118,8 @@ class ToleranceTable:
 class StudyFile:
     """A study: its initial design (`design` file, or shipped `case` with `parameters`), its responses and its limits.
 
-    `responses` contains measures by name, `limits` contains texts with "at least" or "at most" by measure. A sweep uses `variables` and
-    `sweep`, an optimisation `variables` and `optimise`, a tolerance analysis `scatter` and `tolerance`.
+    `responses` contains a measure for each name. `limits` contains a text with "at least" or "at most" for each measure. A sweep uses
+    `variables` and `sweep`. An optimisation uses `variables` and `optimise`. A tolerance analysis uses `scatter` and `tolerance`.
     """
 
     name: str = "study"
@@ -166,7 +167,7 @@ def is_share(raw: str | float) -> bool:
 
 
 def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
-    """Convert an amount to SI units. Raises `DesignError` with the address `where` for another quantity.
+    """Convert an amount to SI units. Raises `DesignError` with the address `where` if the unit belongs to another quantity.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> parse_amount("1.5 mm", LENGTH, "variables.neck.from")

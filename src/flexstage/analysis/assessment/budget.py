@@ -29,7 +29,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
 
-_NO_DENSITY = "no amplitude density specified (--input-asd)"
+_NO_DENSITY = "the amplitude spectral density of the inputs is not specified (--input-asd)"
 
 
 @check_arguments
@@ -47,26 +47,26 @@ def budget(
     """Compute the error budget at a platform point for a box of displacements (half widths [m, rad]) and a temperature change [K].
 
     Lost motion and drift (strokes fixed) are computed by the lumped model, for the loaded stage if the permanent load is significant. Drift
-    is computed with the ground material of the description (`ground_of`), unless `drifted` is specified. If the temperature change is
-    `None`, drift is computed for 1 K. If expansion coefficients are missing and the change is 0 or `None`, drift is omitted, and `reasons`
-    has a note.
+    is computed with the ground material of the description (`ground_of`), unless the argument `drifted` contains the drift. If the
+    temperature change is `None`, drift is computed for 1 K. If expansion coefficients are missing and the change is 0 or `None`, drift is
+    omitted, and `reasons` contains the reason.
 
-    xi are the displacements, R_a the strokes per platform motion, and a = R_a xi the ideal strokes. J = dx/da is the ideal Jacobian, V are
-    the ideal motions, T = dx/da is the gain of the elastic model, and Lambda = I - R_a V^+ T its lost motion. All contributions are largest
-    absolute values:
+    The displacements are xi, R_a contains the strokes per platform motion, and the ideal strokes are a = R_a xi. J contains the ideal
+    platform motions per stroke, T the platform motions per stroke in the elastic model, and V the ideal motions. The matrix of lost motion
+    is Lambda = I - R_a V^+ T. Each contribution is a largest absolute value:
 
-    - lost motion: J diag(Lambda) R_a xi;
+    - lost motion: J diag(Lambda) R_a xi, with the diagonal part diag(Lambda);
     - crosstalk: J (Lambda - diag(Lambda)) R_a xi, plus the motion outside the ideal motions;
     - crosstalk with lost motion corrected: the residual T a - V xi, with the corrected strokes a = (R_a V^+ T)^-1 R_a xi;
-    - linear map: finite kinematics minus linear kinematics at the corners;
+    - linear map: the motion by finite kinematics minus the motion by linear kinematics, at the corners of the box;
     - gauge noise: `coverage` standard deviations;
     - quantisation: half a step of every gauge with the worst signs;
-    - stepping actuators: half a step of each actuator with the worst signs (standard deviation: step/sqrt(12)).
+    - actuator steps: half a step of each actuator with the worst signs (the standard deviation of this error is step/sqrt(12)).
 
     For a force-driven stage in open loop, the forces are u = (V^+ C)^+ xi, where C is the static gain of the elastic model. The budget then
-    has the parasitic motion C u - V xi instead of lost motion, crosstalk and linear map. `noise` has one-sided power spectral densities of
-    actuator inputs (current, force, stroke), wrenches and ground motion. The resulting rms motion is relative to the ground; its density is
-    integrated over the `band` [Hz] (default: the band of `response`).
+    has the parasitic motion C u - V xi instead of lost motion, crosstalk and linear map. `noise` contains one-sided power spectral
+    densities of actuator inputs (current, force, stroke), wrenches and ground motion. The budget then contains the resulting rms motion
+    relative to the ground: the density of this motion is integrated over `band` [Hz] (default: the band of `response`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)
@@ -78,7 +78,7 @@ def budget(
         raise refuse(at, "unknown point", suggest_nearest(at, (PLATFORM, *assembly.points)))
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
-        raise refuse(at, f"a point of {body}, not of the platform", "Use a point of the platform")
+        raise refuse(at, f"this point belongs to {body}, not to the platform", "Use a point of the platform")
     kinematics, model = ideal(mechanism), loaded_lumped_model(mechanism)
     forced = bool(kinematics.thrusts) and not kinematics.actuated
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))

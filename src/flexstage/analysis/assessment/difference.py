@@ -51,7 +51,7 @@ class Change:
 
     @property
     def relative(self) -> Annotated[float | None, SHARE, Heading(digits=3)]:
-        """Relative change, (new - old)/old; None if undefined."""
+        """Relative change, (new - old)/old; None if a value is missing or the old value is 0."""
         return None if self.old is None or self.new is None or self.old == 0.0 else self.new / self.old - 1.0
 
 

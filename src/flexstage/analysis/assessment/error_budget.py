@@ -20,7 +20,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 STEPS = "actuator steps"
 PARASITIC = "parasitic motion"
-"""Source name for the parasitic motion of a force-driven stage; this source replaces lost motion and crosstalk."""
+"""Name of the source "parasitic motion" of a force-driven stage, which replaces lost motion, crosstalk and linear map."""
 NOISES = ("actuator noise", "floor vibration")
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
 
@@ -29,8 +29,8 @@ class ErrorBudget(Result):
     """Largest errors by axis (rows) and source (columns) [m, rad], with the `ideal` mapping and with `corrected` lost motion.
 
     `missing` names unknown sources (e.g. unspecified gauge noise), which are NaN and omitted from the sums. `ground` is the ground material
-    assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. For a force-driven
-    stage, `ideal` and `corrected` are equal, because the elastic model gives the forces.
+    assumed for drift, and `coverage` is the number of standard deviations of gauge noise. `reasons` explain unknown sources. For a
+    force-driven stage, `ideal` and `corrected` are equal, because the elastic model gives the forces.
     """
 
     ideal: Matrix
@@ -50,7 +50,7 @@ class ErrorBudget(Result):
 
     @property
     def sums(self) -> Annotated[Matrix, VIEW]:
-        """Sums of the errors of all sources, linear and root-sum-square (columns), by axis (rows), for `ideal` and `corrected`."""
+        """Sums of the errors of all sources by axis (rows): linear and root-sum-square sums of `ideal` and of `corrected` (columns)."""
         columns = [
             function(matrix.values)
             for matrix in (self.ideal, self.corrected)
@@ -61,9 +61,9 @@ class ErrorBudget(Result):
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:
-    """Return the columns of R_a, strokes per platform motion, for the coordinates of a command.
+    """Return the indices of the columns of R_a that belong to the coordinates of a command.
 
-    Raises `DesignError` for unknown coordinates.
+    R_a contains the strokes per platform motion. Raises `DesignError` for unknown coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

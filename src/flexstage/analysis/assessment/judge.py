@@ -28,9 +28,9 @@ class Estimate:
 def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verdict, ...]:
     """Evaluate every `[requirements]` line of a description by the lumped model; reuse the results of `bench` if present.
 
-    If the permanent load is significant (1 %), stiffness, frequencies, lost motion, corrected strokes and drift are those of the loaded
-    stage. A requirement with an unknown value (a safety factor without yield stress) is not met; its verdict has the reason. Raises
-    `DesignError` for unreadable requirements.
+    If the permanent load changes stiffness or frequencies by 1 % or more, stiffness, frequencies, lost motion, corrected strokes and drift
+    are those of the loaded stage. A requirement with an unknown value (e.g. a safety factor if no yield stress is specified) is not met,
+    and its verdict contains the reason. Raises `DesignError` for unreadable requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [bool(verdict.passed) for verdict in judge(double_triangle())]

@@ -1,4 +1,4 @@
-"""Measures: scalar results of a stage for requirements, sweeps, optimisation and tolerances. A function computes each."""
+"""Measures: scalar results of a stage for requirements, sweeps, optimisation and tolerances. One function computes each measure."""
 
 from __future__ import annotations
 
@@ -80,15 +80,16 @@ class Extreme(Enum):
 
 @dataclass(frozen=True, eq=False)
 class MeasureKind:
-    """Kind of measure: the `form` of its key, its `quantity` (for rotations: `about`), and the function `work` that computes its SI value.
+    """Kind of measure: the `form` of its key, its `quantity`, and the function `work` that computes its SI value.
 
     The first sentence of the docstring of `work` defines the measure.
 
-    - `pointed`: a point may be specified.
+    - `about`: the quantity of the measure about an axis; `quantity` is then the quantity along an axis.
+    - `pointed`: the measure may be computed at a specified point.
     - `extreme`: `work` returns m pieces (..., m), one for every actuator, hinge or stack; the least or largest piece is the measure, and an
       optimiser uses all pieces.
     - `softening`: an exponent; at worst, a permanent load with the critical load factor n multiplies the measure by (1 - 1/n)^softening.
-    - `over_strokes`: the measure is the worst over the full range of strokes.
+    - `over_strokes`: the measure is the worst value over the full range of strokes.
     - `load_dependent`: the measure depends on lost motion, drift or deflection, which the permanent load changes.
     - `analytic`: complex-step differentiation is valid.
     - `along`: the measure is evaluated along a path of the design, or at a point of the path.
@@ -118,7 +119,7 @@ class MeasureKind:
         return found[..., None] if self.extreme is None else found
 
     def value(self, bench: StageResults, asked: Measure) -> Array:
-        """Value (...). Raises `DesignError` if the stage has no such value."""
+        """Value (...) of the measure. Raises `DesignError` if the measure has no value for the stage."""
         found = np.asarray(self.work(bench, asked))
         return found if self.extreme is None else self.extreme.of(found)
 
@@ -128,10 +129,10 @@ class MeasureKind:
 
 @dataclass(frozen=True)
 class Measure:
-    """Measure of a stage: its `key`, its `kind`, the `name` of an axis, actuator, gauge, path or number, and a point.
+    """Measure of a stage: its `key`, its `kind`, the `name` of an axis, actuator, gauge, path or number, and a `point`.
 
-    With `place`, the driven coordinate of the path has this value; without it, the measure is the worst along the path. `path` names the
-    path of a measure that is evaluated `over` a path.
+    If `place` is specified, a measure along a path is evaluated where the driven coordinate has this value. Otherwise, the measure is the
+    worst value along the path. `path` names the path of a measure that is evaluated `over` a path.
     """
 
     key: str
@@ -147,7 +148,7 @@ class Measure:
 def stroke(bench: StageResults, asked: Measure) -> Array:
     """Symmetric stroke along one axis, with lost motion corrected.
 
-    Every actuator and stop limits the stroke in both directions; in force-driven stages, the continuous force limits it.
+    Every actuator and stop limits the stroke in both directions; in force-driven stages, the continuous force limits the stroke.
     """
     if bench.forced:
         return bounds_along(bench.force_workspace(asked.point), asked.name)
@@ -164,7 +165,7 @@ def stroke(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, load_dependent=True)
 def corner(bench: StageResults, _: Measure) -> Array:
-    """Largest ratio of required to available actuator stroke or stop gap, with all required strokes at once."""
+    """Largest ratio of the motion of an actuator or at a stop to the limit of this motion, with all required strokes at once."""
     return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
 
 
@@ -183,19 +184,19 @@ def platform_frequency(bench: StageResults, asked: Measure) -> Array:
 def _nth(frequencies: Array, asked: Measure) -> Array:
     count = frequencies.shape[-1]
     if int(asked.name) > count:
-        raise refuse(f"requirements.{asked.key}", f"mode number too high (the stage has {count} such modes)", "Use a lower number")
+        raise refuse(f"requirements.{asked.key}", f"mode number too high (expected {count} or less)", "Use a lower number")
     return frequencies[..., int(asked.name) - 1]
 
 
 @partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
 def safety(bench: StageResults, _: Measure) -> Array:
-    """Stress limit over peak stress in the worst hinge, at the worst corner of the stroke range from zero voltage, or at force limits."""
+    """Stress limit divided by peak stress in the worst hinge, for the worst strokes (from zero voltage) and forces within their limits."""
     return _known_safety(bench.stress)
 
 
 @partial(MeasureKind, "safety.at_strokes", RATIO, extreme=Extreme.LEAST)
 def safety_at_strokes(bench: StageResults, _: Measure) -> Array:
-    """Stress limit over peak stress in the worst hinge, at the worst corner of the range of required strokes."""
+    """Stress limit divided by peak stress in the worst hinge, for the worst combination of required strokes."""
     return _known_safety(bench.stress_at_strokes)
 
 
@@ -208,7 +209,7 @@ def _known_safety(found: HingeStress) -> Array:
 
 @partial(MeasureKind, "buckling", RATIO, over_strokes=True)
 def buckling(bench: StageResults, _: Measure) -> Array:
-    """Critical load over compression in the worst part, at the worst corner of the stroke range."""
+    """Linearised load factor of the whole stage under permanent load and the worst strokes."""
     return bench.buckling.min_factor
 
 
@@ -221,7 +222,7 @@ def stiffness(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "stiffness.<direction>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
 def directed_stiffness(bench: StageResults, asked: Measure) -> Array:
-    """Stiffness of the platform along a direction (about it with r), with all other motions free."""
+    """Stiffness of the platform along a direction (about the direction if its name starts with r), with all other motions free."""
     along, start = direction_of(asked.name, asked.key), 3 * asked.name.startswith("r")
     return 1.0 / (along @ _compliance(bench, asked)[..., start : start + 3, start : start + 3] @ along)
 
@@ -348,7 +349,7 @@ def own_loss(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST, load_dependent=True)
 def crosstalk(bench: StageResults, _: Measure) -> Array:
-    """Largest apparent stroke of one actuator due to the stroke of another."""
+    """Largest ratio of an actuator's apparent stroke to the stroke of the other actuator that causes it."""
     values = bench.lost.loss.values
     others = values[..., ~np.eye(values.shape[-1], dtype=bool)]
     return magnitude(others) if others.size else np.zeros((*values.shape[:-2], 1))
@@ -585,8 +586,8 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     """Lowest natural frequency with the required motions of the platform fixed.
 
     N spans the null space of the n constraint rows of these motions. With the stiffness K and the mass M of the free stage, the constrained
-    stage has the matrices N'KN and N'MN. By interlacing, this frequency is at most the frequency of mode n + 1 of the free stage. The
-    Rayleigh quotient of the real mode shape gives exact complex-step derivatives.
+    stage has the matrices N^T K N and N^T M N. By the interlacing of eigenvalues, this frequency is at most the frequency of mode n + 1 of
+    the free stage. The Rayleigh quotient of the real mode shape gives exact complex-step derivatives.
     """
     axes = [axis for axis, value in bench.command.items() if value]
     if not axes:
@@ -608,11 +609,11 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
 @partial(MeasureKind, "clearance", LENGTH, analytic=False)
 @_each_design
 def clearance(bench: StageResults, asked: Measure) -> float:
-    """Smallest gap between outlines not connected by a joint, at rest and at the corners of the required strokes; negative for an overlap.
+    """Smallest gap between outlines that no joint connects, at rest and at the corners of the required strokes; negative for an overlap.
 
     The linear model gives the motion at the corners (at the ends of single strokes, if more than three are required). Bodies are rigid; a
-    link moves by the mean of the motions of the two bodies that it joins. Without required strokes or actuators, the measure is the gap at
-    rest.
+    link moves by the mean of the motions of the two bodies that it joins. If the stage has no required strokes or no actuators, the measure
+    is the gap at rest.
     """
     found = [least_gap(bench.mechanism, each) for each in ({}, *_corner_twists(bench))]
     known = [each.distance for each in found if each is not None]
@@ -647,7 +648,7 @@ def over(kind: MeasureKind) -> MeasureKind:
     'frequency.<n> over <path>'
     """
     if kind.softening <= 0.0:
-        raise refuse(kind.form, "unknown along a path", "Use a frequency or a stiffness over a path")
+        raise refuse(kind.form, "not defined over a path", "Use a frequency or a stiffness over a path")
 
     @_each_design
     def least(bench: StageResults, asked: Measure) -> float:
@@ -680,7 +681,7 @@ MEASURES: Register[MeasureKind] = Register(
 
 
 def measure_kind(form: str) -> MeasureKind:
-    """Return the kind of measure of a form. Raises `DesignError` if no installed package provides this kind.
+    """Return the kind of measure whose keys have the given form. Raises `DesignError` if no installed package provides this kind.
 
     >>> measure_kind("mass").meaning
     'mass of the platform without payload'
@@ -689,5 +690,5 @@ def measure_kind(form: str) -> MeasureKind:
     if found is not None and form.endswith(_OVER):
         return over(found)
     if found is None:
-        raise refuse(form, "no installed package provides this measure", "Install the package that does")
+        raise refuse(form, "no installed package provides this measure", "Install the package that provides the measure")
     return found

@@ -64,7 +64,7 @@ class Verdict:
 
     @property
     def margin(self) -> Array:
-        """Relative margin (...) to the limit (0.1: 10 % reserve); negative if the requirement is not met, NaN without a value.
+        """Relative margin (...) to the limit (0.1: 10 % reserve); negative if the requirement is not met, NaN if the value is unknown.
 
         For a limit of zero, the margin is absolute, in SI units.
         """
@@ -81,7 +81,9 @@ class Verdict:
 
 
 def asked_factor(mechanism: Mechanism) -> float:
-    """Return the required load factor: the largest limit in the lines `buckling.factor` and `buckling`, else in `safety`, else 1.
+    """Return the required load factor: the largest lower limit of all requirements on buckling.
+
+    If no requirement is on buckling, the result is the largest lower limit of a safety factor, or 1 if no safety factor is required.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> asked_factor(parallelogram())
@@ -173,7 +175,9 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
 
 
 def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
-    """Read the name of a measure: a key as in `[requirements]`; some keys have `at` and a named point. Errors name the place `where`.
+    """Read the name of a measure: a key as in `[requirements]`, for some keys followed by `at` and a named point.
+
+    Errors name the location `where`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")

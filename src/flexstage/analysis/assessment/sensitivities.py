@@ -1,7 +1,7 @@
 """Exact sensitivities of frequencies and gains to every number of a description.
 
-Derivatives of K, M and the gains are computed by complex steps through the models' formulas; each parameter is one design of a batch.
-Eigenvalue derivatives are analytic: d lambda = phi^T (dK - lambda dM) phi.
+Derivatives of stiffness K, mass M and gains are computed by complex steps through the models' formulas; each parameter is one design of a
+batch. Eigenvalue derivatives are analytic: d lambda = phi^T (dK - lambda dM) phi, with the mode shape phi.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ _CHUNK = 24
 class Sensitivities(Result):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
-    `frequency` (P, k) contains the derivatives of k frequencies, in Hz per SI unit of the parameter; for the modes of a cluster, these are
-    the derivatives of the mean frequency. `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the
-    eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi, converted to frequency slopes. Phi are the mode shapes, lambda is the mean squared
-    angular frequency, dK and dM are the derivatives of stiffness and mass. The slopes in `one_sided` are valid for changes of a single
-    parameter and cannot be added. `gain` and `loss` (P, n) are the derivatives of each actuator's gain and lost motion; n = 0 if the
-    strokes do not determine the platform's motion. `missing` has the reasons for absent results.
+    `frequency` (P, k) contains the derivatives of k frequencies, in Hz per SI unit of the parameter; for the modes of a cluster, it
+    contains the derivatives of the cluster's mean frequency. `clusters` lists the groups of modes. For each cluster of c modes, `one_sided`
+    has the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi, converted to frequency slopes. Phi contains the mode shapes, lambda is the
+    mean squared angular frequency, and dK and dM are the derivatives of stiffness and mass. The slopes in `one_sided` are valid for changes
+    of a single parameter and cannot be added. `gain` and `loss` (P, n) are the derivatives of each actuator's gain and lost motion; n = 0
+    if the strokes do not determine the platform's motion. `missing` has the reasons for absent results.
     """
 
     parameters: tuple[str, ...]
@@ -101,11 +101,12 @@ class Sensitivities(Result):
 def sensitivities(
     mechanism: Mechanism, parameters: tuple[str, ...] | None = None, *, modes: int = 12, cluster: float = 1e-6
 ) -> Sensitivities:
-    """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to `parameters` (default: all numbers).
+    """Compute derivatives of the lowest `modes` natural frequencies and of all actuators' gains with respect to `parameters`.
 
-    Modes with a relative frequency gap below `cluster` count as repeated; only the derivative of their mean frequency is smooth. The result
-    includes all modes of a cluster. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises
-    `DesignError` for unknown addresses, and for addresses that are not a single number in the description.
+    `parameters` are addresses of numbers in the description, such as `materials.steel.density` (default: all numbers of the description).
+    Modes with a relative frequency gap below `cluster` form a cluster of repeated modes; only the derivative of their mean frequency is
+    smooth. The result includes all modes of a cluster. Gains require strokes that determine the platform's motion; otherwise `missing`
+    contains the reason. Raises `DesignError` for an unknown address, and for an address without a single specified number.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
@@ -230,7 +231,9 @@ def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> 
 
 
 def project(contributions: Contributions, shapes: Array) -> Array:
-    """Compute Phi^T dA Phi (p, k, k) for mode shapes Phi (n, k): dA is the derivative of a sum of `contributions` with complex steps.
+    """Compute Phi^T dA Phi (p, k, k) for mode shapes Phi (n, k).
+
+    A is the sum of the `contributions`. Their complex steps give the derivative dA.
 
     >>> from flexstage.models.linear.model import Contribution
     >>> one = np.ones((1, 1))

@@ -34,10 +34,11 @@ _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One mode: a `platform` mode, a `local` mode near a platform mode, or another mode. `platform_share` is a kinetic-energy fraction.
+    """One mode: a `platform` mode, a `local` mode near a platform mode, or another mode.
 
-    `compliance_share` is the mode's fraction of the platform's static compliance, along the platform's motion in this mode. `energy_share`
-    lists the bodies and links with a kinetic-energy fraction of at least 1 %, largest first.
+    `platform_share` is the platform's fraction of the kinetic energy. `compliance_share` is the mode's fraction of the platform's static
+    compliance, along the platform's motion in this mode. `energy_share` lists the bodies and links with a kinetic-energy fraction of at
+    least 1 %, largest first.
     """
 
     TABLE: ClassVar[Layout] = Layout("Modes", "number frequency name platform_share compliance_share plane role")
@@ -59,7 +60,7 @@ class Mode:
 
     @property
     def role(self) -> Annotated[str, INNER, Heading(mark=_ROLES.__getitem__)]:
-        """Platform mode or local mode."""
+        """Role in words: "platform", "local, near" (a local mode near the platform modes) or "local"."""
         return "platform" if self.platform else "local, near" if self.local else "local"
 
 
@@ -67,9 +68,9 @@ class Modes(Result):
     """Undamped natural modes of a stage, sorted by frequency.
 
     The stage has k modes and n coordinates. `frequencies` (..., k) are in Hz, `shapes` (..., n, k) are mass-normalised, `platform_shapes`
-    (..., 6, k) are the platform's twists. `share` (..., k) is the kinetic-energy fraction of the platform body, `compliance_share` (..., k)
-    the fraction of the platform's static compliance. `energies` (..., b, k) are the kinetic-energy fractions of b bodies and links, named
-    in `bodies`. `chosen` (..., k) marks platform modes.
+    (..., 6, k) are the platform's twists. `share` (..., k) is the kinetic-energy fraction of the platform body, and `compliance_share`
+    (..., k) is each mode's fraction of the platform's static compliance. `energies` (..., b, k) are the kinetic-energy fractions of b
+    bodies and links, named in `bodies`. `chosen` (..., k) marks platform modes.
 
     `names`, `in_plane` and `platform` (indices of the platform modes) describe the modes of the first design. A local mode in which several
     bodies have equal energy fractions is named after all of them. `limit` determines only the number of listed modes. If `partial`, the
@@ -108,14 +109,14 @@ class Modes(Result):
 
     @property
     def listed(self) -> Annotated[int, VIEW]:
-        """Number of listed modes: all below `limit`, but at least 24, and at least all up to the last `platform` or `local` mode."""
+        """Number of listed modes: all modes below `limit` and all modes up to the last `platform` or `local` mode, but at least 24."""
         below = int(np.sum(first_design(self.frequencies, 1) < self.limit)) if np.isfinite(self.limit) else 0
         last = max((*self.local, *self.platform), default=-1) + 1
         return min(len(self.names), max(below, last, _LISTED))
 
     @property
     def computed(self) -> Annotated[int, VIEW]:
-        """Number of computed modes: all, except for a large stage."""
+        """Number of computed modes: all modes, or only the lowest modes of a large stage."""
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
@@ -139,7 +140,7 @@ class Modes(Result):
 
     @property
     def highest(self) -> float:
-        """Highest platform frequency below the limit, for the first design [Hz]; if none is below it, the lowest one."""
+        """Highest platform frequency below `limit` [Hz], of the first design; if none is below `limit`, the lowest platform frequency."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 
@@ -159,11 +160,12 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Shin & Moon, equation 28).
 
-    The modal compliances are summed in ascending order of frequency. A mode is a platform mode if it raises this sum above a tenth of the
-    platform's static compliance in one more direction (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The
-    basis of a cluster is rotated: shapes with platform motion align with the platform's axes, other shapes with the coordinates that move
-    most. The result contains all computed modes; `limit` [Hz] affects only `Modes.listed`. Displacements are small. For a large stage
-    (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
+    The modal compliances are summed in ascending order of frequency. In some directions of platform motion, this sum exceeds a tenth of the
+    static compliance. A mode that increases the number of these directions is a platform mode (see `models.batch.choice`). Modes with a
+    relative frequency difference below `cluster` form a cluster. The basis of a cluster is rotated: shapes with platform motion are aligned
+    with the platform's axes, other shapes with the coordinates that move most. The result contains all computed modes; `limit` [Hz] affects
+    only `Modes.listed`. Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30
+    of the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -375,7 +377,7 @@ def _range(key: tuple[str, ...], numbers: list[int]) -> list[str]:
 
 
 def modal_assurance(first: Array, second: Array, weight: Array | None = None) -> Matrix:
-    """Compute the modal assurance criterion (MAC) |a^T W b|^2 / (a^T W a)(b^T W b) of shapes a (n, k) and b (n, m).
+    """Compute the modal assurance criterion (MAC) |a^T W b|^2 / ((a^T W a) (b^T W b)) of shapes a (n, k) and b (n, m).
 
     The `weight` W (n, n) defaults to the unit matrix.
 

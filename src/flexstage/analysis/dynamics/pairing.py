@@ -23,7 +23,7 @@ _UNSEEN = 1e-9
 
 @dataclass(frozen=True)
 class Pair:
-    """Mode of another model that is paired with a mode: its index, frequency [Hz] and modal assurance (0 to 1)."""
+    """Partner of a mode in another model: index and frequency [Hz] of the partner, and modal assurance of the pair (0 to 1)."""
 
     index: int
     frequency: float
@@ -51,8 +51,9 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     rotations are multiplied by the platform's radius of gyration. The modal assurance is normalised by the total kinetic energy of each
     mode, including motion without an output.
 
-    Any mode of the other model can be paired, also a local mode. Modes closer than 1 % are compared as a subspace and paired in ascending
-    order. Below a modal assurance of `RELIABLE`, the paired mode is only the most similar one, not a match.
+    Any mode of the other model can be paired, also a local mode. Modes with frequencies that differ by less than 1 % are compared as a
+    subspace and paired in ascending order. Below a modal assurance of `RELIABLE`, the paired mode is only the most similar mode, not a
+    match.
 
     >>> from flexstage.analysis.dynamics.modes import modes
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -117,7 +118,7 @@ def _root(inertia: Array) -> Array:
 
 
 def gyration(model: LinearModel) -> float:
-    """Return the platform's radius of gyration [m], which scales angles to lengths; 0.1 m without a rigid platform."""
+    """Return the platform's radius of gyration [m], which scales angles to lengths; 0.1 m if the platform is not rigid."""
     item = model.inertia.get("platform")
     if item is None or item.law.shape[-2:] != (6, 6):
         return _LENGTH

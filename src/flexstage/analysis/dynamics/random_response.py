@@ -40,10 +40,10 @@ class Rate(Enum):
 class Spectrum(CheckedFields):
     """One-sided power spectral density of an input.
 
-    `density` is one number (white noise), or a table (f,) of densities at `frequencies` (f,) in Hz. The unit of `density` is (unit of the
-    input)^2/Hz or, with `rate`, (unit of the velocity or acceleration)^2/Hz. Between the frequencies of a table, the logarithm of the
-    density is linear in the logarithm of the frequency; outside, the density is zero. Example for floor acceleration: `Spectrum(1e-8,
-    rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    `density` is one number (white noise), or a table (f,) of densities at `frequencies` (f,) in Hz. `rate` specifies whether the density is
+    that of the input, of its velocity or of its acceleration. The unit of `density` is the square of the unit of this quantity, divided by
+    Hz. Between the frequencies of a table, the logarithm of the density is linear in the logarithm of the frequency. Outside the table, the
+    density is zero. Example for floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array
@@ -111,10 +111,12 @@ def random_response(
     The density of output i is the sum over j of |H_ij|^2 S_j, with the frequency response H_ij to input j and the density S_j of this
     input. The square of the rms value is the integral of the output's density over `band`.
 
-    `spectra` maps input names to one-sided densities. An input is a single channel of `response` (`ground.z` is floor motion). `band` is
-    (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. The frequency panels end at
-    multiples of the half width from each resonance, at the points of tables, and at six points per decade. These panels resolve every peak
-    (error 1e-8, compared with the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
+    `spectra` maps input names to one-sided densities. Each name is a single input channel, as in `response`; for example, `ground.z` is
+    vertical floor motion. `band` is (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per
+    panel. Panels are frequency intervals. Their ends are at about six frequencies per decade, at the frequencies of the tables in
+    `spectra`, and at distances from each resonance that are multiples of its half width (natural frequency times damping ratio). These
+    panels resolve every peak (error 1e-8, compared with the solution of the Lyapunov equation). Raises `DesignError` for unknown names, an
+    empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -154,7 +156,7 @@ def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]
 
 def _table_findings(name: str, density: Array, frequencies: Array | None) -> list[Finding]:
     wrong = not np.all(np.isfinite(density)) or np.any(density < 0.0) or (frequencies is not None and np.any(density == 0.0))
-    findings = [Finding(name, "invalid density (negative or not finite, or zero in a table)", "Correct it")] if wrong else []
+    findings = [Finding(name, "invalid density (negative or not finite, or zero in a table)", "Correct the density")] if wrong else []
     if frequencies is not None and (density.shape != frequencies.shape or np.any(np.diff(frequencies) <= 0.0) or frequencies[0] <= 0.0):
         findings.append(
             Finding(name, "invalid frequencies (expected positive ascending numbers, one for each density)", "Correct the table")

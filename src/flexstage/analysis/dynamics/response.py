@@ -42,8 +42,8 @@ def response(
     - groups of six components (`platform`, `ground`).
 
     `frequencies` (f,) are in Hz (default: `default_frequencies`). `damping` replaces the damping law of the design. Structural damping
-    requires one solution per frequency, other laws a single eigenvalue problem. Raises `DesignError` for unknown names and unspecified
-    damping.
+    requires one solution per frequency; all other damping laws require a single eigenvalue problem. Raises `DesignError` for unknown names
+    and unspecified damping.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -63,10 +63,11 @@ def transmissibility(
 ) -> Response:
     """Compute the transmissibility (..., f, p, 6): absolute motion of the outputs per unit motion of the ground.
 
-    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. K, D and M are stiffness, damping and mass matrices. C gives the outputs for
-    motion relative to the ground, C_r for rigid motion with the ground. M_b is the inertia force per acceleration of the ground; the ground
-    moves about the platform's reference point. Damping acts on motion relative to the ground. At low frequency, T of the platform's twist
-    tends to the unit matrix. T of gauges and stress resultants tends to zero, because they depend only on relative motion.
+    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b, with the angular frequency omega. K, D and M are stiffness, damping and mass
+    matrices. C gives the outputs for motion relative to the ground, and C_r gives the outputs for rigid motion with the ground. M_b is the
+    inertia force per acceleration of the ground; the ground rotates about the platform's reference point. Damping acts on motion relative
+    to the ground. At low frequency, T of the platform's twist tends to the unit matrix. T of gauges and stress resultants tends to zero,
+    because these outputs depend only on relative motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -80,9 +81,9 @@ def transmissibility(
 def default_frequencies(model: LinearModel, band: tuple[float, float] | None = None, *, damping: Damping | None = None) -> Array:
     """Return a frequency grid (f,) in Hz: 40 points per decade, and 25 additional points across every resonance.
 
-    The points across a resonance are f_r (1 + zeta_r tan theta), |theta| < 83 degrees, with the natural frequency f_r and the damping ratio
-    zeta_r. The default `band` is from 1/50 of the first natural frequency to twice the twelfth. The resonances of the first design of a
-    batch are used; repeated modes have their mean frequency.
+    The points across a resonance are f_r (1 + zeta_r tan theta), with the natural frequency f_r and the damping ratio zeta_r; the angles
+    theta are equally spaced from -83 to 83 degrees. The default `band` is from 1/50 of the first natural frequency to twice the twelfth
+    natural frequency. For a batch, the resonances of the first design are used. Repeated modes have their mean frequency.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -112,7 +113,7 @@ def _check(frequencies: Array) -> Array:
     if grid.ndim != 1 or not np.all(np.isfinite(grid)) or np.any(grid < 0.0):
         raise refuse(
             "frequencies",
-            f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}",
+            f"not one row of finite, non-negative numbers in Hz (got shape {grid.shape})",
             "Correct the list",
         )
     return grid

@@ -1,4 +1,4 @@
-"""Finite-element modes for comparisons, independent of the solver."""
+"""Finite-element modes for comparisons, in a form that does not depend on the finite-element solver."""
 
 from __future__ import annotations
 

@@ -86,9 +86,9 @@ def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, 
 
 
 def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
-    """Yield one warning for each body with the largest effect on quantities that flexible bodies change by more than `SIGNIFICANT`.
+    """Yield one warning for each body that has the largest effect on any quantity with a change above `SIGNIFICANT`.
 
-    The warning names the two quantities that change most. The changes are those due to all bodies together.
+    The warning names the two quantities that change most. Each change is due to the flexibility of all bodies together.
     """
     large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: -round(abs(each.change), 6))
     for body in dict.fromkeys(each.body for each in large):
@@ -96,6 +96,6 @@ def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
         values = " and ".join(f"{each.quantity} by {100.0 * each.change:.0f} %" for each in worst)
         yield Finding(
             body,
-            f"modelled as rigid, but flexible bodies change {values}; the effect is largest here",
+            f"modelled as rigid, but flexible bodies change {values}; the effect of this body is the largest",
             "Make the body stiffer, or include its flexibility: --elastic-bodies",
         )

@@ -38,8 +38,8 @@ class Deflection(Result):
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
     """Compute the deflection of a platform point under gravity and specified forces, with strokes fixed.
 
-    For the model of the loaded stage (see `load_effect`), the deflection is the motion from the unloaded to the loaded equilibrium, by the
-    theory of large displacements. In this model, all loads together are one cause.
+    If `model` is the model of the loaded stage (see `load_effect`), the deflection is the motion from the unloaded to the loaded
+    equilibrium, by the theory of large displacements. The result then has only one cause, `all loads`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

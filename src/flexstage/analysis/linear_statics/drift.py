@@ -1,8 +1,9 @@
 """Thermal drift: motion due to uniform and linear temperature changes, per kelvin.
 
-Every body and part expands freely with the temperature field T(r). A linear field with gradient g causes no stress in a free body. At r
-from the body's reference point, the displacement is u = alpha [T r + (g . r) r - g r^2 / 2], the rotation alpha g x r. Incompatible
-expansion is imposed on the links.
+Every body and part expands freely with the temperature field. A linear field with gradient g causes no stress in a free body. T is the
+temperature change at the body's reference point, and r is the position relative to this point. With the expansion coefficient alpha, the
+displacement at r is u = alpha [T r + (g . r) r - g r^2 / 2], and the rotation is alpha g x r. The links deform where the expansions of
+bodies and parts do not fit.
 """
 
 from __future__ import annotations
@@ -41,10 +42,10 @@ _FITS = 1e-7
 class Drift(Result):
     """Motion and forces due to a temperature field of unit size: uniform (1 K), or linear along x, y or z (1 K/m).
 
-    `motion` has six components for the platform and for each named point. `gauges` are the readings, `forces` the six stress resultants of
-    each elastic link. `ground` is the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the
-    fixed point of the ground; linear temperature fields are zero there. `taken` names the material used for each body. `bodies` are the
-    twists (..., 6, 4) of all bodies at their reference points, in the four temperature fields.
+    `motion` has six components for the platform and for each named point. `gauges` contains the gauge readings, and `forces` the six stress
+    resultants of each elastic link. `ground` is the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3)
+    [m] is the fixed point of the ground; linear temperature fields are zero there. `taken` names the material used for each body. `bodies`
+    are the twists (..., 6, 4) of all bodies at their reference points, in the four temperature fields.
     """
 
     motion: Matrix
@@ -95,15 +96,16 @@ class _Thermal:
 
 @check_arguments
 def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None, datum: Vector = (0.0, 0.0, 0.0)) -> Drift:
-    """Compute the thermal drift of a stage: free expansion of bodies and parts, redistributed elastically by the links, with strokes fixed.
+    """Compute the thermal drift of a stage with strokes fixed: bodies and parts expand, and the links deform elastically.
 
-    `ground` names the ground's material (default: from `ground_of`; `none`: no expansion). Motions are relative to the ground's `datum`. A
-    stage of one material, including the ground, expands without stress. Springs, shear piezos, amplified actuators and compliance matrices
-    that replace no part do not expand: compute their expansion separately. For a model `linearise(state, inner=False)`, the expansion of
-    the nominal stage is combined with the stiffness of the loaded stage.
+    `ground` names the ground's material (default: the material from `ground_of`); with `none`, the ground does not expand. Motions are
+    relative to the ground's `datum`. A stage of one material, including the ground, expands without stress. Springs, shear piezos,
+    amplified actuators and compliance matrices that replace no part do not expand: compute their expansion separately. If `model` is from
+    `linearise(state, inner=False)`, its stiffness is that of the loaded stage, but the expansion is that of the nominal stage.
 
     Raises `DesignError` for missing expansion coefficients, an unknown ground material, or locked degrees of freedom that block expansion.
-    Models whose stiffness is not assembled from links are refused: mapped models, and linearised models with `inner` coordinates.
+    `DesignError` is also raised for models with stiffness that does not belong to links: mapped models, and linearised models with `inner`
+    coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

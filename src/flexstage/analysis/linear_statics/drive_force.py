@@ -26,16 +26,16 @@ class DriveForce(Result):
     """Drive force divided by the displacement along each coordinate, compared with the ideal guide.
 
     The ideal guide has the same stiffness as the stage in the ideal DOFs of its flexures, and is rigid in all other DOFs. `force` is the
-    generalised force of the actuators divided by the displacement: a row for each coordinate, a column for the elastic stage and one for
-    the ideal guide. `shares` and `excess` have a row for each link and a column for each coordinate. The shares are the links' fractions of
-    the elastic displacement, which add up to 1. The excesses are the links' contributions to `total`.
+    generalised force of the actuators divided by the displacement, with a row for each coordinate, a column for the elastic stage and a
+    column for the ideal guide. `shares` and `excess` have a row for each link and a column for each coordinate. The shares are the links'
+    fractions of the elastic displacement, which add up to 1. The excesses are the links' contributions to `total`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Drive force per displacement, compared with the ideal guide",
         "table",
         head="along",
-        notes=("The ideal guide has the same flexures, rigid except in their intended DOFs. Negative: softer than the ideal guide.",),
+        notes=("The ideal guide has the same flexures, rigid except in their ideal DOFs. Negative excess: softer than the ideal guide.",),
     )
 
     force: Matrix
@@ -50,7 +50,7 @@ class DriveForce(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the coordinates, columns the force, the force of the ideal guide, and the excess."""
+        """Table of the coordinates (rows) with the force, the force of the ideal guide and the excess."""
         values = np.concatenate([self.force.values, self.total[..., None]], axis=-1)
         units = tuple((*row, "1") for row in self.force.unit)
         return Matrix(values, self.force.rows, ("force", "ideal guide", "excess"), units)

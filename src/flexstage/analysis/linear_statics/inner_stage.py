@@ -22,14 +22,14 @@ from flexstage.spatial.frame import COMPONENTS
 def amplified(mechanism: Mechanism) -> Amplified:
     """Condense a stage into one part. The stage's ground is the part's first face, and the stage's platform is the second face.
 
-    The lumped model gives the platform's compliance at its reference point with the stroke fixed, and its motion at full stroke. The part's
-    centre is the platform's reference point, and its axes are the stage's axes. For a link with this part, `along` is the stage's x
+    The lumped model gives, at the platform's reference point, the compliance with the stroke fixed and the motion at full stroke. The
+    part's centre is the platform's reference point, and its axes are the stage's axes. For a link with this part, `along` is the stage's x
     direction, and `bends` is the stage's z direction. Voltages, bias and capacitance are taken from the stage's single actuator. Each of
     the two faces has half of the mass of all bodies and links.
 
     The part has the stage's exact static behaviour. The part has no internal modes; therefore it is valid only well below the first
     internal mode with both faces fixed. Loads and preload of the actuator are ignored. Raises `DesignError` unless the stage has exactly
-    one actuator, and this is a stroke actuator.
+    one actuator, which must be a stroke actuator.
 
     >>> from flexstage.cases.registry import case
     >>> part = amplified(case("bridge"))

@@ -1,4 +1,4 @@
-"""Lost motion: deviation of elastic from ideal motion, its budget by part, and the correction gains."""
+"""Lost motion: deviation of the elastic motion from the ideal motion, budget of this deviation by link, and correction gains."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
 LOADED = "geometric"
-"""Name of the contribution of the geometric stiffness of a loaded or displaced stage to the budget."""
+"""Name of a budget entry: the contribution of the geometric stiffness of a loaded or displaced stage."""
 
 
 class Shares(dict[str, Array]):
@@ -65,11 +65,12 @@ class ActuatorLoss:
 class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
-    `gain` T (..., 6, n) is the elastic motion of the platform per stroke. `transfer` is R_a V^+ T (..., n, n), with the transmission of
-    each actuator on its diagonal: V^+ projects T onto the coordinates of the ideal motions, and R_a maps these to strokes. `loss` Lambda is
-    the unit matrix minus `transfer`. `parasitic` is the component of T outside the ideal motions. `budget` has the contribution of every
-    link and axis to each entry of Lambda; their sum is Lambda. `correction` is the matrix (R_a V^+ T)^-1 R_a, which maps the coordinates of
-    a motion to the corrected strokes. `energy` is the strain energy of each part, divided by the square of the stroke of one actuator.
+    `gain` T (..., 6, n) is the elastic motion of the platform per stroke. `transfer` is R_a V^+ T (..., n, n): V^+ projects T onto the
+    coordinates of the ideal motions, and R_a maps these coordinates to strokes. The diagonal of `transfer` contains the transmission of
+    each actuator. `loss` Lambda is the unit matrix minus `transfer`. `parasitic` is the component of T outside the ideal motions. `budget`
+    has the contribution of every link and axis to each entry of Lambda; the sum of all contributions is Lambda. `correction` is the matrix
+    (R_a V^+ T)^-1 R_a, which maps the coordinates of a motion to the corrected strokes. `energy` is the strain energy of each part due to
+    the stroke of one actuator, divided by the square of this stroke.
     """
 
     gain: Matrix
@@ -88,7 +89,7 @@ class LostMotion(Result):
         return {name: ActuatorLoss(self.transfer.at(name, name), self.loss.at(name, name), self.of(name)) for name in self.loss.rows}
 
     def of(self, actuator: str) -> Shares:
-        """Return the budget of an actuator's own (diagonal) loss by part: contributions whose sum is the loss."""
+        """Return the contributions of links and axes to an actuator's own (diagonal) loss; their sum is this loss."""
         index = self.loss.rows.index(actuator)
         return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
 
@@ -99,13 +100,14 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
 
     Lost motion is the matrix Lambda = I - R_a V^+ T, with the symbols of `LostMotion`. The budget of contributions by link is exact for any
     graph of links. By virtual work and reciprocity, the entry Lambda_ij is the sum of f_e . gamma_e over all links e. Here f_e is the force
-    of link e, with strokes fixed, due to the platform wrench in row i of R_a V^+. The vector gamma_e is the deformation of link e in the
-    ideal motion of stroke j. For one unloaded lever, the diagonal of Lambda is eps / (1 + eps), with eps = K_theta2 / (r_1^2 K_1) (equation
-    11 of Shin & Moon). K_theta2 is the pivot stiffness, r_1 the short arm, K_1 the stiffness of stack and hinges. Motions are small.
+    of link e that balances a wrench on the platform while the strokes are fixed; this wrench is row i of R_a V^+. The vector gamma_e is the
+    deformation of link e in the ideal motion of stroke j. For one unloaded lever, the diagonal of Lambda is eps / (1 + eps), with eps =
+    K_theta2 / (r_1^2 K_1) (equation 11 of Shin & Moon). K_theta2 is the pivot's stiffness, r_1 is the length of the short arm, and K_1 is
+    the stiffness of stack and hinges. Motions are small.
 
     If the model is linearised about a displaced state, the ideal motion is still computed in the nominal position. The budget then requires
-    the model `linearise(state, inner=False)`, and has the additional contribution `geometric` of the geometric stiffness. Raises
-    `DesignError` if the strokes do not determine the platform's motion.
+    a model from `linearise(state, inner=False)`. It has an additional contribution `geometric`, which is due to the geometric stiffness.
+    Raises `DesignError` if the strokes do not determine the platform's motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -44,13 +44,14 @@ class MassMatrix(Result):
 
 @check_arguments
 def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> MassMatrix:
-    """Compute the mass matrix (..., 6, 6) of the platform or another body at its reference or a named point [kg, kg m, kg m^2].
+    """Compute the mass matrix (..., 6, 6) [kg, kg m, kg m^2] at a `point` of a body: of this body alone, and of the whole stage.
 
-    `rigid` is X^T M X: M is the body's mass matrix at its reference point, and X maps a twist of the point to the twist of the reference
-    point. `reduced` is S^T M S: M is the mass matrix of the model, and S = K^-1 C^T (C K^-1 C^T)^-1 are its static shapes for unit twists
-    of the point with strokes fixed. K is the stiffness of the model, and C maps its coordinates to the twist of the point. The theory
-    assumes small displacements, without free internal modes. `reduced` is None for a point with fewer than six degrees of freedom, or with
-    a free internal mode of its body. `rigid` is None for a body without mass.
+    `point` is a named point, or the name of a body (its reference point). `rigid` is X^T M X: M is the body's mass matrix at its reference
+    point, and X maps a twist of `point` to the twist of the reference point. `reduced` is S^T M S, with the mass matrix M of the model. The
+    columns of S are the static shapes of the model for unit twists of `point`, with strokes fixed: S = K^-1 C^T (C K^-1 C^T)^-1. K is the
+    stiffness matrix of the model, and C maps the model's coordinates to the twist of `point`. The theory assumes small displacements and no
+    free internal modes. `reduced` is None if `point` has fewer than six degrees of freedom, or if the body has a free internal mode.
+    `rigid` is None for a body without mass.
 
     >>> import flexstage as fs
     >>> stage = fs.case("double-triangle")

@@ -47,8 +47,8 @@ class Omitted:
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static response of an output to an input (names in `channel`) for restricted parts and for full parts.
 
-    `simple` maps parts or links (`vertical/pivot`) to their elastic and their free degrees of freedom; all others are locked. One at a
-    time, each locked or freed degree of freedom is made elastic. Batches are not supported.
+    `simple` maps parts or links (`vertical/pivot`) to their elastic and their free degrees of freedom; all other degrees of freedom are
+    locked. One at a time, each locked or freed degree of freedom is made elastic. Batches are not supported.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.cases.double_triangle import EQUATION_3
@@ -72,7 +72,7 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
 
 
 def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
-    """Return the restrictions of a lever unit, by link, in equation 3 of Shin & Moon: axial springs and a rotating ground pivot.
+    """Return the restrictions of links that equation 3 of Shin & Moon assumes for a lever unit: axial springs and a rotating ground pivot.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [freedom.value for freedom in lever_theory(double_triangle(), "vertical")["vertical/pivot"][0]]

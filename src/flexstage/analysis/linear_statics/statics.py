@@ -22,7 +22,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 _SINGULAR = 1e-11
 _ALIKE = 1e-9
-_LOCKED = "the model locks degrees of freedom of the platform: infinite stiffness along them"
+_LOCKED = "the model locks degrees of freedom of the platform, along which the stiffness is infinite"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +65,9 @@ class DirectionalStiffness:
 class Statics(Result):
     """Static behaviour of the platform at a point.
 
-    `compliance` (..., 6, 6) maps a wrench at `load_point` to the twist at `read_point`; `stiffness` is its inverse. `held` and `free` are
-    the in-plane stiffness tensors with all other degrees of freedom fixed and free (as in a push test), respectively. `centre` (..., 3) is
-    the centre of stiffness relative to the load point [m].
+    `compliance` (..., 6, 6) maps a wrench at `load_point` to the twist at `read_point`; `stiffness` is the inverse of `compliance`. `held`
+    is the in-plane stiffness tensor with all other degrees of freedom fixed. `free` is the in-plane stiffness tensor with all other degrees
+    of freedom free, as in a push test. `centre` (..., 3) is the centre of stiffness relative to the load point [m].
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a result of statics", "fs.statics(fs.lumped(stage))")
@@ -89,13 +89,13 @@ class Statics(Result):
 
 @check_arguments
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
-    """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
+    """Compute the platform's compliance and stiffness for a load at the point `load_point` and a displacement at the point `read_point`.
 
-    Strokes are fixed, and displacements small. The compliance is C_read K^-1 C_load^T: K is the stiffness matrix of the model, and C_read
-    and C_load map its coordinates to the twists of the two points. If the platform has fewer than six degrees of freedom in the model (the
-    mapped model of a guide), the stiffness is infinite along the locked degrees of freedom. All entries of the stiffness, and tensors
-    derived from it, are then NaN. In a batch, the first design determines which degrees of freedom are locked. Along an axis without
-    stiffness, the compliance is infinite.
+    The point `platform` is the platform's reference point. Strokes are fixed, and displacements are small. The compliance is C_read K^-1
+    C_load^T. K is the stiffness matrix of the model. C_read and C_load map the coordinates of the model to the twists of `read_point` and
+    `load_point`. If the model locks degrees of freedom of the platform, as the mapped model of a guide does, the stiffness along these
+    degrees of freedom is infinite. All entries of the stiffness matrix, and tensors derived from this matrix, are then NaN. In a batch, the
+    first design determines which degrees of freedom are locked. Along an axis without stiffness, the compliance is infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -148,9 +148,11 @@ class FreedomStiffness(Result):
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
     """Compute the stiffness along each ideal motion and along each constraint of a stage with fewer than six ideal motions.
 
-    `found` is the statics at a point of the platform. With the other degrees of freedom free, the stiffness of a degree of freedom is the
-    reciprocal of its diagonal entry in the compliance. With the others fixed, it is the diagonal entry in the stiffness. The stiffness is
-    NaN for a locked degree of freedom. Returns None if the stage has six ideal motions, or if read-out and load points differ.
+    `found` is the result of `statics` for a point of the platform. Each degree of freedom i has two values of stiffness. If all other
+    degrees of freedom are free, the stiffness is 1/C_ii, with the diagonal entry C_ii of the compliance matrix. If all other degrees of
+    freedom are fixed, the stiffness is the diagonal entry K_ii of the stiffness matrix. If the model locks degrees of freedom, 1/C_ii is
+    NaN for these, and K_ii is NaN for all. Returns None if the stage has six ideal motions, or if the load point of `found` is not its
+    read-out point.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

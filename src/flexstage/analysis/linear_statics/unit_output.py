@@ -20,8 +20,8 @@ class UnitOutput:
     """Output properties of one isolated unit, in its own frame.
 
     `unit` is the unit's name; `copy` is the analysed instance. `direction` (3,) is the direction of the output; `stiffness` is the 6x6
-    stiffness at the output with strokes fixed. If the output is guided along the direction, `gain` is the output motion divided by the
-    stroke, and `ideal_gain` the gain without elasticity.
+    stiffness at the output with strokes fixed. With the output guided along `direction`, `gain` is the output motion divided by the stroke,
+    and `ideal_gain` is this gain without elasticity.
     """
 
     unit: str

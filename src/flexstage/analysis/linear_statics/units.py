@@ -42,7 +42,7 @@ class UnitResult(UnitOutput):
         "Isolated units",
         "copy axial softest_lateral stiffest_lateral ideal_gain gain loss series",
         head="unit",
-        notes=("Actuators fixed, output guided along its direction.",),
+        notes=("Stiffness is for fixed actuators. Gain and loss are for an output that is guided along its direction.",),
     )
 
     loss: Annotated[float, SHARE]
@@ -55,7 +55,7 @@ class UnitResult(UnitOutput):
 def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
     """Isolate and analyse, for every unit, the first instance with exactly one actuator at its output. Batches are not supported.
 
-    A unit that does not work in isolation (a carriage guided by neighbouring units) is omitted. With `omissions`, the errors of lever
+    A unit that does not work in isolation (a carriage guided by neighbouring units) is omitted. If `omissions` is true, the errors of lever
     theory are also computed, which takes most of the time.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -104,7 +104,9 @@ def as_vector(direction: Array) -> Vector:
 
 
 def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, omissions: bool = True) -> UnitResult:
-    """Analyse one isolated instance of a unit with output along a direction (3,); with `omissions`, also the errors of lever theory.
+    """Analyse one isolated instance of a unit with output along a direction (3,).
+
+    If `omissions` is true, the result includes the errors of lever theory.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(unit_alone(double_triangle(), "B4", "vertical", np.array([0.0, 0.0, 1.0])).gain, 1)

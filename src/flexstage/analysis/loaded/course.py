@@ -1,4 +1,4 @@
-"""Load paths of a design in SI units: relative to the static equilibrium, along a drive, under constant loads."""
+"""Load paths of a design in SI units: each path varies a drive from the static equilibrium, under constant loads."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ _ENDS = 8
 
 @dataclass(frozen=True, eq=False)
 class LoadCase(CheckedFields):
-    """Load case: one load grows at an operating point. `grows` contains this load by components, e.g. the weight or the specified forces.
+    """Load case: one load grows at an operating point. `grows` contains the components of this load, e.g. weight or specified forces.
 
     `stays` contains the constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. A displaced
     coordinate is free to move and its force is constant, unless the coordinate is `locked`. `gravity` is the fraction of the weight.
@@ -76,14 +76,14 @@ class LoadCase(CheckedFields):
 class CaseFactor:
     """Critical load factor of a `load` at the operating point `place`, with the `kind` of critical point and the `buckling_mode`.
 
-    `factor` is infinite if the stage is stable up to the largest computed factor, and NaN if unknown; `why` is the reason. `bound` is the
-    factor up to which the stage is known to be stable, NaN if unknown.
+    `factor` is infinite if the stage is stable up to the largest computed factor. `factor` is NaN if it is unknown; `why` is then the
+    reason. `bound` is the factor up to which the stage is known to be stable, or NaN if no such factor is known.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Load cases and stroke ends",
         "load place factor bound kind buckling_mode why",
-        notes=("Only this load grows; all others are constant. Actuators are free if a force brings the stage to the operating point.",),
+        notes=("Only the listed load grows; others are constant. Actuators are free if a force brings the stage to the operating point.",),
     )
 
     load: str
@@ -111,7 +111,7 @@ class CaseFactors(Result):
 
     @property
     def least_bound(self) -> CaseFactor | None:
-        """Case with the least factor among those whose load path ends without buckling; None if all paths are complete."""
+        """Case with the least `bound` among the cases with an unknown critical load factor; None if there is no such case."""
         unknown = [case for case in self.cases if np.isnan(case.factor) and case.bound > 0.0]
         return min(unknown, key=lambda case: case.bound, default=None)
 
@@ -142,15 +142,17 @@ class CaseFactors(Result):
 def buckling_factors(
     mechanism: Mechanism, cases: Sequence[LoadCase] | None = None, *, temperature: float = 0.0, most: float = _MOST, demand: float = 1.0
 ) -> CaseFactors:
-    """Compute the critical load factor of every load case and stroke end of a design, at large displacements.
+    """Compute the critical load factor of every load at every operating point of a design, with large displacements.
 
-    The loads are the weight with payloads, and the specified forces with preloads; for a path in `[paths]`, also the loads in its `hold`.
-    One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. Without
-    paths, the other operating points are both stroke ends of every actuator (for at most eight actuators), and the corner of the strokes
-    that is worst by linearised buckling.
+    The loads are the weight with payloads, and the specified forces with preloads. At the ends of a path in `[paths]`, the loads in the
+    path's `hold` are a further load. In each load case one load grows, and all other loads are constant. The operating points are the
+    static equilibrium and both ends of every path. A design without paths has other operating points: the static equilibrium, both stroke
+    ends of every actuator (for at most eight actuators), and the combination of stroke ends with the least load factor by linearised
+    buckling.
 
-    At an operating point, a force of constant direction displaces a coordinate, as for `--at`; a stroke is fixed at its value. The largest
-    computed load factor is `most`.
+    If an operating point is a displacement of a coordinate, a force of constant direction causes this displacement, as with the option
+    `--at`. If an operating point is a stroke, the stroke is fixed at its value. The search for critical load factors ends at the load
+    factor `most`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [case.place for case in buckling_factors(parallelogram(), most=2.0).cases]

@@ -45,11 +45,11 @@ _MODES = 6
 class LoadEffect:
     """Effect of the permanent load (weight, payloads, preloads, specified forces, bent or warm flexures) on a stage.
 
-    `change` is the largest relative change of the platform stiffness along an axis or of one of the first frequencies; `figure` is the name
-    of this quantity. If `figure` is empty, `change` is an upper bound for any stiffness, from linearised buckling. `model` is the model
-    linearised about the loaded state if the change is significant (1 % or more), else None. `links` is the same model with flexures that
-    follow their ends quasi-statically, for lost motion and drift. `state` is the loaded state. `why` is the reason if the change is
-    unknown.
+    `change` is the largest relative change of the platform stiffness along an axis or of one of the first frequencies; `figure` names the
+    changed quantity. If `figure` is empty, `change` is an upper bound for the change of any stiffness, from linearised buckling. `model` is
+    the model linearised about the loaded state if the change is significant (1 % or more), else None. `links` is the same model with
+    flexures that follow their ends quasi-statically, for lost motion and drift. `state` is the loaded state. If the change is unknown,
+    `why` is the reason.
     """
 
     change: Annotated[float, RATIO]

@@ -42,10 +42,10 @@ class Misaligned(Result):
     contains the equilibria. `loads` are the wrenches on the ends of the flexures at the largest misalignment, each in the frame at the
     flexure's start.
 
-    `critical` is the misalignment at which the first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment
-    up to which the stage is known to be stable: `critical`, or the end of the computed path. This path ends at the latest at 0.1 rad for a
-    rotation, and at 0.1 times the length of the longest flexure for a translation. Stable states beyond `critical` belong to another branch
-    and have no values.
+    `critical` is the misalignment at which the first stiffness vanishes [rad, m]; NaN if no stiffness vanishes. `followed` is the largest
+    misalignment up to which the stage is known to be stable: `critical`, or the end of the computed path. This path ends at the latest at
+    0.1 rad for a rotation, and at 0.1 times the length of the longest flexure for a translation. Stable states beyond `critical` belong to
+    another branch and have no values.
     """
 
     copy: str
@@ -88,12 +88,12 @@ class Misalignments(Result):
 
 @check_arguments
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
-    """Compute, with large displacements, the internal loads of a stage if the seat of an instance or link on the ground is misaligned.
+    """Compute the internal loads of a stage with one misaligned instance or link on the ground, with large displacements.
 
-    The seat connects the instance's links to the ground. The seat moves along or about an axis of the instance's frame, to a number
-    `points` of equally spaced values from zero to `size` [m, rad]. The centre of rotation is the origin of the instance's frame, or the
-    middle of a link. The weight is included. Motions without redundant constraints remain free. Raises `DesignError` for unknown names and
-    for instances that are not connected to the ground.
+    The ends of the instance's links on the ground are fixed to a rigid seat. The seat moves along or about an axis of the instance's frame,
+    in equal steps from zero to `size` [m, rad]; `points` is the number of positions. The centre of rotation is the origin of the instance's
+    frame or, for a single link, the middle of the link. The weight is included. Only the motion of the seat is prescribed; all other
+    motions are free. Raises `DesignError` for unknown names and for instances that are not connected to the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = misalign(parallelogram(), "left", "ry", 1e-3, points=3)

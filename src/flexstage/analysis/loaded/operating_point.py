@@ -36,7 +36,7 @@ class OperatingPoint(Result):
     """Operating point: `sag` is the static deflection under weight, loads and heat, `moved` the displacement from static equilibrium.
 
     `sag` and `moved` have a row for the platform and for each named point; the columns are displacement and rotation vector. `moved` is
-    None without displacement. `held` lists every displaced or fixed coordinate: its value relative to the static equilibrium, and the force
+    None if `at` is empty. `held` lists every displaced or fixed coordinate: its value relative to the static equilibrium, and the force
     that holds it. `rest` is the static equilibrium, `state` the displaced equilibrium, and `linear` the model linearised about `state`.
     """
 
@@ -73,13 +73,14 @@ def operating_point(
     """Compute the operating point of a stage at large displacements, and linearise about it.
 
     First, the static equilibrium is solved under weight, payloads, preloads, specified forces, `loads` (as in `equilibrium`) and
-    `temperature` (a uniform change [K]). `at` then displaces coordinates from this equilibrium by forces of constant direction, for example
-    `platform.y` [m] or `platform.rz` [rad] (a component of the rotation vector). `at` can also contain strokes, by stack name; the
-    operating point is computed with these strokes. In the linear model, the coordinates displaced by `at` are free, and the displacing
-    forces are constant. The coordinates named in `fixed` are fixed at their equilibrium value, or at the value in `at`.
+    `temperature` (a uniform change [K]). Then, forces of constant direction displace the coordinates in `at` from this equilibrium.
+    Coordinates are for example `platform.y` [m] or `platform.rz` [rad] (a component of the rotation vector). `at` can also contain strokes,
+    by stack name; the operating point is computed with these strokes. In the linear model, the coordinates displaced by `at` are free, and
+    the displacing forces are constant. The coordinates named in `fixed` are fixed at their equilibrium value, or at the value in `at`.
 
-    Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium. The error then reports the largest fraction
-    of the displacement that has an equilibrium. `DesignError` is also raised if the stage is unstable under the forces.
+    Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium. The error for a missing equilibrium reports
+    the largest fraction of the displacements for which an equilibrium was found. `DesignError` is also raised if the stage is unstable
+    under the forces.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = operating_point(parallelogram(), {"platform.x": 1e-4})
@@ -122,7 +123,7 @@ def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Definition of an operating point: constant `loads`, displacements and strokes `at`, `fixed` coordinates, `weight` as a fraction."""
+    """Definition of an operating point: constant `loads`, displacements and strokes `at`, `fixed` coordinates, and a fraction `weight`."""
 
     model: Nonlinear
     loads: Mapping[str, float]
@@ -249,7 +250,7 @@ def _idle(requested: Conditions, state: State) -> Iterator[Finding]:
     """Drives and loads without effect."""
     for name, value in {**requested.loads, **requested.driven}.items():
         if value == 0.0 and name not in requested.coordinates:
-            yield Finding(name, "zero has no effect", "Use another value, or remove this entry")
+            yield Finding(name, "the value zero has no effect", "Use another value, or remove this entry")
     moved = np.abs(state.pose.position - requested.rest.pose.position) / requested.model.size
     turned = np.abs(state.pose.turn - requested.rest.pose.turn)
     if any(requested.driven.values()) and max(np.max(moved), np.max(turned)) < _STILL:

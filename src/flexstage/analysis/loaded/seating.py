@@ -29,7 +29,7 @@ class Seating:
     """Contact loads of a ball in its seat, at the worst contact.
 
     `left` (...) is the least normal force divided by the force due to the preload; the ball lifts off at zero. `slip` is the tangential
-    force divided by the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is
+    force divided by the friction limit, NaN if no friction is specified. `pressure` is the largest contact pressure [Pa]. `crush` is
     `pressure` divided by the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
     """
 
@@ -109,5 +109,5 @@ def seating_findings(found: Mapping[str, Seating]) -> Iterator[Finding]:
             what = f"the ball slips: weight, payloads and forces give a tangential force of {slip:.3g} times the friction limit"
             yield Finding(name, what, "Increase the preload: the contact stiffness is valid only without slip")
         if crush > 1.0:
-            what = f"the greatest pressure, {pressure / 1e6:.4g} MPa, is {crush:.3g} times the onset of yield in the softer material"
-            yield Finding(name, f"{what}, {_ONSET:g} times the yield stress", "Use a larger ball, a harder material or less preload")
+            what = f"the greatest pressure, {pressure / 1e6:.4g} MPa, is {crush:.3g} times the pressure at which the softer material yields"
+            yield Finding(name, f"{what} ({_ONSET:g} times its yield stress)", "Use a larger ball, a harder material or less preload")

@@ -1,8 +1,9 @@
 """Stability of a whole stage: linearised buckling load factors in the nominal position.
 
 Linearised buckling of the nominal stage solves (K + lambda K_g) x = 0. The geometric stiffness K_g is the second variation of the energy of
-the loaded stage. It has one term for every part under its wrench (`beams.geometric`), and one for every rigid body with forces F at points
-r that rotate with the body. The latter is tr(S) I - (S + S^T)/2 with S = sum F r^T, r from the body's reference point.
+the loaded stage. K_g has one term for every part under its wrench (`beams.geometric`), and one term for every rigid body. The term of a
+rigid body is tr(S) I - (S + S^T)/2 with S = sum F r^T. F are the forces on the body. The points of application of these forces rotate with
+the body; r are their positions relative to the body's reference point.
 """
 
 from __future__ import annotations
@@ -58,9 +59,9 @@ _SHAPES = 6
 class Stability:
     """Buckling load factors of a stage (...). `dead` is the load factor of weight, payloads and forces with all strokes zero.
 
-    `worst` (...) is the load factor of the permanent load together with the worst `strokes` (..., m) [m]; it is infinite without softening.
-    `stiffens` (...) is the largest relative increase of any stiffness due to the permanent load. `moving` names the bodies with the largest
-    motion in the buckling mode.
+    `worst` (...) is the load factor of the permanent load together with the worst `strokes` (..., m) [m]; it is infinite if nothing softens
+    the stage. `stiffens` (...) is the largest relative increase of any stiffness due to the permanent load. `moving` names the bodies with
+    the largest motion in the buckling mode.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -98,16 +99,16 @@ class Stability:
         if 1.0 <= dead < DOUBTFUL:
             what = (
                 f"weight, payloads and forces soften the stage: load factor {dead:.3g}, {buckling_clause(' and '.join(self.moving))}. In "
-                f"that motion the loaded stage is {100.0 / dead:.2g} % less stiff than the nominal one, and its frequency "
+                f"that motion the loaded stage is {100.0 / dead:.2g} % less stiff than the nominal stage, and its frequency "
                 f"{_lower(dead):.2g} % lower"
             )
-            advice = "Results of the unloaded stage do not include this. Stiffen the parts in compression, or put them in tension"
+            advice = "Results of the unloaded stage do not include this effect. Stiffen the parts in compression, or put them in tension"
             yield Finding("stage", what, advice)
         if worst < DOUBTFUL and worst < 0.99 * dead:
             what = f"load factor {worst:.3g} at the worst corner of the stroke range"
             if worst >= 1.0:
                 what += (
-                    f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, and a frequency "
+                    f": there the stage is up to {100.0 / worst:.2g} % less stiff than the results show, and a frequency "
                     f"up to {_lower(worst):.2g} % lower"
                 )
             yield Finding("stage", what, "Stiffen the parts that the stacks compress, or limit the strokes")
@@ -132,7 +133,7 @@ def _lower(factor: float) -> float:
 
 @SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
-    """Compute linearised buckling load factors of the stage; with `limits`, also for the worst strokes within the limits.
+    """Compute linearised buckling load factors of the stage; if `limits` are specified, also for the worst strokes within these limits.
 
     `model` must be the lumped model. The worst strokes are at a corner of the limits, because the reciprocal of the factor is a convex
     function of the strokes. Raises `DesignError` for stages with superelements, whose geometric stiffness is unknown.

@@ -82,7 +82,7 @@ def _stopped(state: State) -> Iterator[Finding]:
         low, high = float(np.min(gone, initial=np.inf)), float(np.max(gone, initial=-np.inf))
         if low < float(stop.low) or high > float(stop.high):
             what = f"the stop is exceeded: motion {_gap(low)} to {_gap(high)}, gaps {_gap(stop.low)} to {_gap(stop.high)}"
-            yield Finding(name, what, "Large displacements ignore stops: reduce the stroke")
+            yield Finding(name, what, "Reduce the stroke: the model for large displacements ignores stops")
 
 
 def _gap(value: float | np.ndarray) -> str:

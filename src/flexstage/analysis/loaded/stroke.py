@@ -40,8 +40,8 @@ class Stroke(Result):
     Columns are the drive's value, the holding force and stiffness of a driven coordinate, and the platform's displacement and rotation
     vector. For a stack, the column `lost` is its lost motion divided by its stroke. Further columns are the platform's first natural
     frequencies (with the coordinate free under the holding force), the largest stress and strain of a flexure, and the number of unstable
-    modes (0: stable). Drive and displacements are relative to the static deflection `sag` under weight and loads; if `sag` is None,
-    relative to the nominal position.
+    modes (0: stable). Drive and displacements are relative to the static deflection `sag` under weight and loads; if `sag` is None, they
+    are relative to the nominal position.
     """
 
     drive: str
@@ -67,12 +67,13 @@ class PostBuckling:
 
 @check_arguments
 def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None) -> Stroke:
-    """Compute the characteristics over a stroke, point by point (equations 25 to 28 of docs/nonlinear.md).
+    """Compute force, stiffness, motion, frequencies and stress at each point of a stroke (equations 25 to 28 of docs/nonlinear.md).
 
-    Frequencies are NaN if the free stage is unstable. Loads and weight are those of `path`. The drive and displacements are relative to
-    `rest`, if specified. With the ideal `kinematics` of the stage, the relative lost motion of a driven stack is 1 - R_a V^+ t / a. Here t
-    is the platform's displacement and rotation vector relative to `rest`, and a the stroke. V^+ maps t to the coordinates of the ideal
-    motions, and R_a maps these to the stroke; both are computed in the nominal position (see `lost_motion`).
+    Frequencies are those of the released stage: a driven coordinate is free under the holding force. They are NaN if the released stage is
+    unstable. Loads and weight are those of `path`. If a state `rest` is specified, the driven coordinate and the displacements are relative
+    to this state. If the ideal `kinematics` of the stage are specified, the result contains the relative lost motion of a driven stack, 1 -
+    R_a V^+ t / a. Here t is the platform's displacement and rotation vector relative to `rest`, and a is the stroke. V^+ maps t to the
+    coordinates of the ideal motions, and R_a maps these to the stroke; both are computed in the nominal position (see `lost_motion`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path
@@ -117,7 +118,7 @@ class Points:
 
     @cached_property
     def motions(self) -> Array:
-        """Number of unstable modes of each released state; -1 without equilibrium."""
+        """Number of unstable modes of each released state; -1 if no equilibrium was found."""
         return unstable_motions(self.state, locked=self.locked)
 
     @cached_property

@@ -40,7 +40,7 @@ class StackLine(Result):
 
 
 class PlatformLine(Result):
-    """Force-displacement lines (..., f) of the platform along each coordinate, commanded by the ideal mapping.
+    """Force-displacement lines (..., f) of the platform along each coordinate, for strokes by the ideal mapping.
 
     `travel` [m, rad] is the largest motion without load, equal in both directions; `stiffness` [N/m, N m/rad] is for a load along this
     coordinate only. `blocking` [N, N m] is the blocked force: the load that returns the platform to zero.

@@ -30,11 +30,11 @@ class Ends(Enum):
     """End conditions of a column, which determine its effective length: P = pi^2 E I / (effective length)^2."""
 
     GUIDED = "guided"
-    """Both ends clamped, one free to move sideways (a flexure between blocks): effective length L."""
+    """Both ends clamped, one end free to move sideways (a flexure between blocks): effective length L."""
     PINNED = "pinned"
     """Both ends pinned (a stack between two hinges): effective length L, from hinge to hinge."""
     FREE = "free"
-    """One end clamped, the other free (a body on a single flexure): effective length 2 L."""
+    """One end clamped, the other end free (a body on a single flexure): effective length 2 L."""
 
 
 class Buckling(Result):
@@ -72,7 +72,7 @@ class Buckling(Result):
 
     @property
     def weakest(self) -> Annotated[str | None, VIEW]:
-        """Link with the least Euler load factor in the first design; None without a column in compression."""
+        """Link with the least Euler load factor in the first design; None if no column is in compression."""
         if not self.links:
             return None
         first = 1.0 / self.factor.reshape(-1, len(self.links))[0]
@@ -140,7 +140,9 @@ def _twisting_load(link: PlacedLink) -> Number:
 
 
 def stack_rigidity(piezo: Piezo) -> Number:
-    """Return the bending rigidity of a stack [N m^2]: as specified, else E I = k L d^2 / 16 of the ceramic (E = k L / A).
+    """Return the bending rigidity E I of a stack [N m^2]: the specified value or, by default, k L d^2 / 16.
+
+    The stack has the stiffness k, the length L, the diameter d and the section A; its modulus is E = k L / A.
 
     >>> round(stack_rigidity(Piezo(stroke=1e-4, stiffness=16e6, length=0.1, diameter=0.01)), 9)
     10.0

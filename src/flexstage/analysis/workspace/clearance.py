@@ -27,7 +27,7 @@ _BOTH_WAYS: Array = np.concatenate([np.eye(3), -np.eye(3)])
 
 @dataclass(frozen=True, eq=False)
 class Intrusion:
-    """Outline inside the aperture, and the motion in plan (...) [m] that would clear it."""
+    """Outline inside the aperture, and the distance `depth` (...) [m] in plan by which it must move to leave the aperture."""
 
     name: str
     depth: Annotated[Array, LENGTH]
@@ -126,7 +126,9 @@ def clearance(mechanism: Mechanism) -> Clearance:
 
 
 def bounds(found: tuple[Outline, ...]) -> tuple[Array, Array, tuple[str, ...]]:
-    """Return the corners low and high (..., 3) [m] of the bounding box, and the names of the outermost outlines; zero without outlines.
+    """Return the low and high corners (..., 3) [m] of the bounding box, and the names of the outermost outlines.
+
+    If there are no outlines, the corners are zero.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> low, high, _ = bounds(outlines(expand(double_triangle())))

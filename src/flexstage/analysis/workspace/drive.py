@@ -1,4 +1,4 @@
-"""Electrical drive: conversion of strokes and voltages, and charging currents of the stacks."""
+"""Electrical drive: conversion between strokes and voltages, and charging currents of the stacks."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ class ForceWorkspace(Result):
         "Reach",
         "held held_briefly limited_by",
         head="along",
-        notes=("Elastic motion possible in both directions: continuous without a time limit, short with the duty cycle `duty` of a coil.",),
+        notes=("Possible elastic motion in both directions. Continuous: without a time limit. Short use: with the duty cycle of a coil.",),
     )
 
     point: str
@@ -67,7 +67,7 @@ class ForceWorkspace(Result):
 
     @property
     def held(self) -> Annotated[Array, VIEW, MOTION, Axes("coordinates"), Heading("continuous, both ways")]:
-        """Least continuous limit of every coordinate (..., f) [m, rad]; NaN without a known limit."""
+        """Least continuous limit of every coordinate (..., f) [m, rad]; NaN if no limit is known."""
         return _least(self.bounds.values)
 
     @property
@@ -77,7 +77,7 @@ class ForceWorkspace(Result):
 
     @property
     def limited_by(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Cause of the least limit of each coordinate, in the first design; empty without a known limit."""
+        """Cause of the least limit of each coordinate, in the first design; empty if no limit is known."""
         first = np.nan_to_num(np.real(first_design(self.bounds.values, 2)), nan=np.inf)
         return tuple(self.bounds.columns[int(np.argmin(row))] if np.isfinite(np.min(row, initial=np.inf)) else "" for row in first)
 
@@ -105,15 +105,15 @@ def _least(bounds: Array) -> Array:
 def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceWorkspace:
     """Compute the force workspace of a stage with force actuators: the limits of the elastic motion along every ideal motion.
 
-    The elastic model gives C = dx/du for strokes and forces u. With as many inputs as motions, the inputs per motion are G = C^-1. With
-    more inputs, G minimises the sum of u_i^2 / limit_i, with the least limit of each input u_i. Coils limit the motion by their peak and
-    continuous currents, heat i^2 R through the thermal resistance, amplifier voltage R i, largest force and magnetic travel. Other limits
-    are the actuator strokes, the nearer side of each stop, and yield in a hinge under the motion and the permanent load. The computation is
-    linear.
+    The elastic model gives the matrix C = dx/du of the motions x and the inputs u (strokes, forces and currents). With as many inputs as
+    motions, the inputs per motion are G = C^-1. With more inputs, G minimises the sum of u_i^2 / limit_i, where limit_i is the least limit
+    of input u_i. The limits of a coil are its peak current, continuous current, temperature rise (heat i^2 R times thermal resistance),
+    amplifier voltage R i, largest force and magnetic travel. Other limits are the actuator strokes, the stops (each stop by its nearer
+    side), and yield in a hinge under the motion and the permanent load. The computation is linear.
 
-    An input drives a coordinate if the resulting motion exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the
-    coordinate, and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal motion,
-    or no motion that an input drives.
+    An input drives a coordinate if the resulting motion exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^(1/2). Here c is the compliance of
+    the coordinate, and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal
+    motion, or no motion that an input drives.
     """
     if not kinematics.thrusts or not kinematics.mobility:
         raise refuse("force_workspace", "no force actuator moves the stage", "Use the workspace of its strokes")
@@ -346,7 +346,10 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
 
 
 def bounds_along(found: ForceWorkspace, name: str) -> Array:
-    """Return the limits (..., k) of the motion along one coordinate, infinite if unspecified. Raises `DesignError` without any limit."""
+    """Return the limits (..., k) of the motion along one coordinate; an unspecified limit is infinite.
+
+    Raises `DesignError` if no limit is specified.
+    """
     if name not in found.coordinates:
         what = "no actuator drives this motion" if name in found.unmoved else "not an ideal motion of this stage"
         raise refuse(f"stroke.{name}", what, f"Use one of {', '.join(found.coordinates)}")

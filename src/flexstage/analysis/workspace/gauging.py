@@ -78,7 +78,7 @@ class PoseResolution(Result):
         "Pose resolution of the gauges",
         "table",
         notes=(
-            "Errors if every reading is wrong by one step, with the worst and with independent signs (rms); rms error due to gauge noise.",
+            "Errors if every reading is wrong by one step, with the worst signs, and rms with independent signs. Rms error due to noise.",
         ),
     )
 

@@ -29,14 +29,14 @@ SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
 
 
 class LoadRange(Result):
-    """Least and largest compression [N] of each stack over the strokes, and the ratios to maximum load and tension limit."""
+    """Least and largest compression [N] of each stack over the strokes, and the used fractions of maximum load and tension limit."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
         notes=(
-            "Strokes are from zero voltage; forces include permanent load, no preload. The used share in compression includes the preload.",
-            "The limit of tension is preload plus tensile limit.",
+            "Strokes are from zero voltage. Forces include permanent load, but not the preload; the share used in compression includes it.",
+            "The limit in tension is the sum of preload and tensile limit.",
         ),
     )
 
@@ -82,7 +82,7 @@ class LoadShare(Result):
         return (self.share.values @ wrench[..., None])[..., 0]
 
     def range(self, limits: StrokeLimits) -> tuple[Array, Array]:
-        """Return the least and the largest compression (..., n) [N] over the box of strokes under permanent load (exact)."""
+        """Return the exact least and largest compression (..., n) [N] over the box of strokes under permanent load."""
         ends = np.stack([self.stroke.values * limits.low[..., None, :], self.stroke.values * limits.high[..., None, :]])
         return (
             self.compression + np.sum(np.min(ends, axis=0), axis=-1),
@@ -126,7 +126,7 @@ class LoadShare(Result):
             if np.isinf(share[place]):
                 yield Finding(name, f"{what}, preload and tensile limit missing", 'Add e.g. preload = "200 N"')
             else:
-                yield Finding(name, f"{what}, {share[place]:.3g} times its limits", "Preload the stack, or limit the voltage")
+                yield Finding(name, f"{what}, {share[place]:.3g} times the limit in tension", "Preload the stack, or limit the voltage")
 
 
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:

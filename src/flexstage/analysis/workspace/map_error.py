@@ -73,7 +73,8 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
     """Compute the error of the linear map in the box of strokes: at corners, centres of faces, and `inside` points of a Halton sequence.
 
     Redundant strokes strain the links, unless the strokes are consistent with a pose. For redundant actuators, the points are therefore the
-    vertices of the reachable polytope and points halfway to them. Raises `DesignError` for more than 12 actuators or none.
+    vertices of the reachable polytope and the points halfway from zero to each vertex. Raises `DesignError` if the stage has no stroke
+    actuators, or more than 12.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

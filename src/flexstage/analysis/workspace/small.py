@@ -1,7 +1,7 @@
 """Limits of small displacements of linear models: rotation of hinges, bending of leaves, motion of the platform.
 
-Linear kinematics neglect terms theta^2/2 of a lever's rotation, and (u/L)^2 of a leaf's deflection. The limit is an error of 1 % (0.141
-rad), or the angle at which the faces of a notch touch, if this is smaller.
+Linear kinematics neglect the terms theta^2/2 of a lever's rotation theta, and (u/L)^2/2 of the deflection u of a leaf of length L.
+The limit is an error of 1 % (0.141 rad) or, if smaller, the angle at which the faces of a notch touch.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _ATOM = 1e-10
 class SecondOrder:
     """Second-order error of linear kinematics over a box of motions: the largest relative `error`, which occurs in the part `link`.
 
-    `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty if there is none), which displaces a guide sideways.
+    `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty if there is none). It displaces a guide sideways.
     `held_twice` is true if the stage has redundant constraints, which may also stretch flexures.
     """
 
@@ -47,7 +47,7 @@ class SecondOrder:
 
     @property
     def text(self) -> str:
-        """Sentence on the error of linear kinematics. This error is no bound for changes of stiffness and frequencies.
+        """Sentence on the error of linear kinematics. Changes of stiffness and frequencies may be larger than this error.
 
         >>> SecondOrder(0.0002, "left", "bends by 0.02 of its length").text.partition(". ")[0]
         'Over the strokes the error of linear kinematics is up to 0.02 % (left bends by 0.02 of its length)'
@@ -94,8 +94,8 @@ class SmallMotion:
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
         """Return half the square of the largest rotation or bend in a box of displacements (half widths).
 
-        The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. The deflection between the ends, both extended
-        rigidly to the middle, is u, and the rotation between the ends is theta.
+        The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. The rotation between the ends is theta. The
+        deflection u is the displacement between the two ends, after each end is extended rigidly to the middle.
         """
         turned, bent = self._moved(command)
         worst = int(np.argmax(np.round(np.maximum(turned, bent), 12)))
@@ -134,7 +134,7 @@ _SMALL = float(np.sqrt(2.0 * ERROR))
 
 
 def second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:
-    """Compute the second-order error over a box of motions; None without a box, or without a part that rotates or bends.
+    """Compute the second-order error over a box of motions; None if there is no box, or if no part rotates or bends.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -148,7 +148,7 @@ def second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[
 
 
 def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
-    """Compute the small-motion limits of the ideal motions (of a batch, the first design).
+    """Compute the small-motion limits of the ideal motions; for a batch, the limits of the first design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -1,4 +1,4 @@
-"""Stops as limits of strokes: the gap of a stop is treated as a stroke, and its motion per ideal motion as a row of R_a."""
+"""Stops as limits of strokes: the gap of a stop is treated as a stroke, and the motion at the stop per ideal motion as a row of R_a."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def with_stops(
 ) -> tuple[Matrix, StrokeLimits]:
     """Return mapping and limits with an additional row for every stop within reach: low <= n^T x <= high.
 
-    Here n^T x is the motion at the stop, for ideal motions x. The coordinates of `mapping` are motions of `point`. A stop is omitted if no
-    combination of strokes can reach it. A missing low limit of a stop is replaced by a finite limit out of reach. Bodies between ground and
-    platform move as in the ideal model (small motions).
+    Here the row n^T maps the ideal motions x to the motion at the stop. The coordinates of `mapping` are motions of `point`. A stop is
+    omitted if no combination of strokes can reach it. A missing low limit of a stop is replaced by a finite limit out of reach. Bodies
+    between ground and platform move as in the ideal model (small motions).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

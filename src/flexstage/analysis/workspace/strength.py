@@ -30,7 +30,7 @@ FROM_ZERO = "of all strokes from zero voltage"
 
 
 class HingeStress(Result):
-    """Largest stress in every hinge over the corners of the stroke range, (..., L) each.
+    """Largest stress in each of L hinges over the corners of the stroke range; the arrays have the shape (..., L).
 
     `nominal` and `peak` (with the notch factor) are von Mises stresses [Pa]. `yield_stress` [Pa] is NaN if unspecified. `strokes` (..., L,
     n) [m] contains the strokes at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices,
@@ -114,8 +114,8 @@ def hinge_stress(
 ) -> HingeStress:
     """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
-    For a stage assembled at zero voltage, whose hinges the bias also bends, use `stroke_limits(mechanism).from_zero` as `limits`. For a
-    stage that is stress-free at its bias, use `stroke_limits(mechanism)`.
+    In a stage assembled at zero voltage, the bias also bends the hinges: use `stroke_limits(mechanism).from_zero` as `limits`. For a stage
+    that is stress-free at its bias, use `stroke_limits(mechanism)`.
 
     With a `command`, `limits` apply to the command's coordinates. `condition` describes the limits in words. The stress is computed by
     linear beam theory; the maxima of a section are added (see `beams.stress`).
@@ -178,12 +178,12 @@ def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
 
 
 def stress_use(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
-    """Compute the largest ratio of stress to limit (...) over all links under wrenches (..., L, 6); NaN without a limit."""
+    """Compute the largest ratio of stress to limit (...) over all links under wrenches (..., L, 6); NaN if a limit is unknown."""
     return np.max(stress_shares(links, wrenches), axis=-1)
 
 
 def stress_shares(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
-    """Compute ratios of stress to limit (..., L) of links under wrenches (..., L, 6); NaN without a limit."""
+    """Compute ratios of stress to limit (..., L) of links under wrenches (..., L, 6); NaN if the limit is unknown."""
     rows = _rows(list(links.values()), wrenches[None], np.zeros((1, *(1,) * (wrenches.ndim - 2), 0)))
     return stack([row[1] / row[4] for row in rows])
 

@@ -39,9 +39,9 @@ _FURTHER = frozenset({"worst_case", "polytope", "drive", "map_error", "gauges", 
 class Workspace(Result):
     """Workspace of one design. A field without a result is `None`; `reasons` has the reason by field name.
 
-    `single_axis` are ideal strokes; `corrected` are strokes with lost motion corrected. `worst_case` is the actuators' demand for the box
-    `command` of motions (half widths by coordinate, all at once); `gauges` are the gauges' readings. Stress, buckling and loads are for a
-    stage that is stress-free at zero voltage, over all strokes and under permanent load.
+    `single_axis` are ideal strokes; `corrected` are strokes with lost motion corrected. `command` is a box of motions (half widths by
+    coordinate, all at once). `worst_case` is the actuators' demand for this box, and `gauges` are the gauge readings in this box. Stress,
+    buckling and loads are for a stage that is stress-free at zero voltage, over all strokes and under permanent load.
     """
 
     command: Annotated[Mapping[str, Number], MOTION]
@@ -79,10 +79,11 @@ def workspace(
     command: Mapping[str, Number] | None = None,
     whole: bool = True,
 ) -> Workspace:
-    """Compute the workspace of one design for displacements `command`, by default all single-axis strokes at once.
+    """Compute the workspace of one design, and the demand of a box of displacements `command` on actuators and gauges.
 
-    Without `whole`, only strokes, resolution, stress and buckling are computed (in two thirds of the time); other fields are `None` without
-    a reason. Raises `DesignError` if the strokes do not determine the platform's motion.
+    `command` contains the half widths of the box by coordinate [m, rad] (default: the ideal single-axis strokes of all coordinates). If
+    `whole` is false, only strokes, resolution, stress and buckling are computed (in two thirds of the time). The other fields are then
+    `None`, and `reasons` does not list them. Raises `DesignError` if the strokes do not determine the platform's motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

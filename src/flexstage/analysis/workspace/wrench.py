@@ -29,8 +29,8 @@ def corner_wrenches(
 ) -> Array:
     """Compute link wrenches (k, ..., L, 6) [N, N m] at all k = 2^n corners of the strokes, under permanent load.
 
-    A wrench is that of the second body on the link, in the link's frame at its centre (tension is positive). The wrench is linear in the
-    strokes, so convex functions of it (stress, force) are largest at a corner. With a `command`, `limits` apply to the command's
+    Each wrench acts from the second body on the link, in the link's frame at its centre (tension is positive). The wrench is linear in the
+    strokes, so convex functions of the wrench (stress, force) are largest at a corner. With a `command`, `limits` apply to the command's
     coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -48,7 +48,7 @@ Commands: TypeAlias = Annotated[
         "--command",
         "AXIS=VALUE",
         "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. Default: the strokes that the design "
-        "requires; without required strokes, flexstage budget uses the largest stroke along each axis with the other axes at rest.",
+        "requires, or the largest stroke of each axis with the other axes at rest if the design requires no strokes.",
     ),
 ]
 
@@ -115,7 +115,8 @@ def drift(
         text_option(
             "--ground",
             "MATERIAL",
-            'Material of the ground, or "none" for no thermal expansion. Default: as in the design, otherwise of links at the ground.',
+            'Ground material, or "none" for no thermal expansion. Default: the ground material that the design specifies; '
+            "otherwise the material of the ground's outlines, or of the links on the ground.",
         ),
     ] = None,
 ) -> CommandResult:
@@ -138,7 +139,7 @@ def drift(
 def sensitivities(
     mechanism: Mechanism,
     *,
-    parameters: Annotated[list[str] | None, parameters_option("every number")] = None,
+    parameters: Annotated[list[str] | None, parameters_option("all numbers of the design")] = None,
     count: Annotated[int, modes_option(min=1)] = 12,
 ) -> CommandResult:
     """Compute sensitivities of frequencies and lost motion.
@@ -161,20 +162,20 @@ def budget(
     mechanism: Lumped,
     *,
     command: Commands = None,
-    temperature: Annotated[str | None, temperature_option("1 K if the drift is known")] = None,
+    temperature: Annotated[str | None, temperature_option("1 K, or 0 K if drift cannot be computed")] = None,
     point: Point = PLATFORM,
     input_asd: InputDensities = None,
-    band: Annotated[tuple[str, str] | None, band_option("as in flexstage response")] = None,
+    band: Annotated[tuple[str, str] | None, band_option("the default of flexstage response")] = None,
 ) -> CommandResult:
     """Compute the error budget of each axis in nm and nrad.
 
     The contributions are lost motion, crosstalk, error of linear kinematics, gauge noise, quantisation and drift. The lumped model computes
-    all.
+    all contributions.
 
     For force-driven stages, the contributions in open loop are parasitic motion, gauge noise, quantisation and drift.
 
-    For a stage without stiffness along its drive, prints the closed-loop positioning noise, as flexstage loop --quick does, and refuses
-    options such as --command.
+    For a stage without stiffness along its drive, prints the closed-loop positioning noise with the controller of flexstage loop --quick.
+    Options such as --command are then refused.
 
     With --input-asd, also prints the motion due to actuator noise and floor vibration.
     """

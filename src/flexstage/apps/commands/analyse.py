@@ -54,10 +54,10 @@ def analyse(  # noqa: PLR0913 (its options)
             "--mat", "FILE", "MATLAB file with the mappings R_a and R_s, the second-order model (K, M, B, C, D) and the state-space model."
         ),
     ] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 for a missed requirement.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if the stage misses a requirement.")] = False,
     full: Full = False,
 ) -> None:
-    """Analyse a stage: everything at once.
+    """Run the main analyses of a stage.
 
     Prints requirements, strokes, stiffness, modes, lost motion, warnings and the verdict. With --full, also prints kinematics, workspace,
     drift and error budget. Output files always contain all results.

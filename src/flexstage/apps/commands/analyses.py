@@ -54,11 +54,11 @@ from flexstage.spatial.frame import COMPONENTS
 
 @command()
 def mapping(mechanism: Mechanism, *, model: ModelName = Model.IDEAL) -> CommandResult:
-    """Compute mobility, redundancy, and mappings R_a and R_s.
+    """Compute mobility, redundancy and kinematic mappings.
 
-    R_a: strokes per platform motion. R_s: gauge readings per platform motion.
+    The mapping R_a converts platform motion to strokes. The mapping R_s converts platform motion to gauge readings.
 
-    With --model mapped or lumped, output files also contain the platform motion per stroke with elasticity included.
+    With --model mapped or lumped, output files also contain the platform motion per stroke of the elastic stage.
     """
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     twist = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -87,14 +87,17 @@ def stiffness(
     *,
     model: ElasticModelName = Model.LUMPED,
     point: Point = PLATFORM,
-    load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the unit load. Default: the point of --point.")] = "",
+    load_point: Annotated[
+        str, text_option("--load-point", "POINT", "Point at which the unit load acts. Default: the point of --point.")
+    ] = "",
     place: OperatingPointOptions,
 ) -> CommandResult:
     """Compute compliance and stiffness of the platform.
 
-    Prints the 6x6 matrices, stiffness by direction and by DOF, the centre of stiffness, and the mass. Actuators are fixed.
+    Prints the 6x6 matrices, stiffness by direction and by DOF, the centre of stiffness, and the mass. Strokes are fixed.
 
-    With --at, --load, --fixed or --temperature, the model is linearised about that operating point, with large displacements and weight.
+    With --at, --load, --fixed or --temperature, the model is linearised about that operating point. The operating point is computed with
+    the weight and large displacements.
     """
     require(
         Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in place.at or () if "=" not in text
@@ -143,7 +146,8 @@ def lost_motion(
     With --at, --load, --fixed or --temperature, the model is linearised about that operating point. The ideal motion is still computed in
     the undeformed configuration.
 
-    For force-driven stages, prints the force per displacement, compared with the ideal guide.
+    For force-driven stages, prints the drive force per displacement of the stage and of the ideal guide. The flexures of the ideal guide
+    are rigid except in their ideal DOFs.
     """
     there, kinematics = command_stage(mechanism, place, model), ideal(mechanism)
     if kinematics.thrusts and not kinematics.actuated:
@@ -191,7 +195,8 @@ def modes(
     Prints platform modes and local modes. For each mode, prints the fraction of kinetic energy in the platform, and the contribution of the
     mode to the static compliance of the platform. --view writes an animation.
 
-    With --at, --load, --fixed or --temperature, the model is linearised about that operating point, with large displacements and weight.
+    With --at, --load, --fixed or --temperature, the model is linearised about that operating point. The operating point is computed with
+    the weight and large displacements.
     """
     ending = None if view is None else _view_ending(view)
     if ending == ".glb" and place:
@@ -250,7 +255,7 @@ def response(
         text_option(
             "--output",
             "NAME",
-            "Output: motion (chuck.x), gauge (S1) or resultant (B4/pivot.mz). Default: platform and gauges. Repeatable.",
+            "Output: motion (chuck.x), gauge (S1) or load in a link (B4/pivot.mz). Default: platform and all gauges. Repeatable.",
         ),
     ] = None,
     band: Annotated[tuple[str, str] | None, band_option("f1/50 to 2 f12 (f1, f12: first and twelfth natural frequency)")] = None,

@@ -43,13 +43,13 @@ from flexstage.studies.synthesis.specification import specification_schema
 
 DEFAULT_CASE = "double-triangle"
 SCHEMA_FILE = "flexstage.schema.json"
-"""File of the schema in the first line of a new design file, for editors: in the same folder, from `flexstage schema > FILE`."""
+"""Name of the schema file in the first line of a new design file, for editors. `flexstage schema > FILE` writes it to the same folder."""
 
 
 def new(
     target: Annotated[Path | None, typer.Argument(metavar="STAGE.TOML", help="File to write.", show_default=False)] = None,
     *,
-    case: Annotated[str, typer.Option(metavar="NAME", help="Shipped case, see --list.")] = DEFAULT_CASE,
+    case: Annotated[str, typer.Option(metavar="NAME", help="Case to write; --list shows all cases.")] = DEFAULT_CASE,
     case_parameter: Annotated[
         list[str] | None, text_option("--case-parameter", "NAME=VALUE", "Parameter of the case, e.g. long_arm=80mm. Repeatable.")
     ] = None,
@@ -57,7 +57,7 @@ def new(
     list_parameters: Annotated[bool, typer.Option("--list-parameters", help="List the parameters of the case.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
 ) -> None:
-    """Write a shipped case as a commented design file."""
+    """Write a case (an example stage) as a commented design file."""
     if listed or list_parameters:
         show([case_table() if listed else parameter_table(case)])
         return
@@ -99,7 +99,8 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Prints every error with key, value and hint. Exit code 2 if there is an error.
 
-    Also lists default values and warnings, which do not change the exit code. Some warnings concern finite elements.
+    Also lists default values and warnings, which do not change the exit code. Warnings marked "finite elements:" apply only to the
+    finite-element model.
     """
     require_writable([("--json", json)], [design])
     try:
@@ -137,10 +138,13 @@ _SCHEMAS = {
 
 def schema(
     kind: Annotated[
-        File, typer.Argument(metavar="[KIND]", help="Kind of file: design, study, loop (set-up), specification or hysteresis (of a stack).")
+        File,
+        typer.Argument(
+            metavar="[KIND]", help="Kind of file: design, study, set-up of a loop, specification, or hysteresis model of a stack."
+        ),
     ] = File.DESIGN,
 ) -> None:
-    """Print the JSON Schema of a kind of file, for editors."""
+    """Print the JSON Schema of a kind of file, for text editors."""
     print_result(as_json(_SCHEMAS[kind](), indent=1, ensure_ascii=False))
 
 
@@ -163,14 +167,16 @@ def plan(
 def catalogue(
     section: Annotated[
         str | None,
-        typer.Argument(metavar="[SECTION]", help="materials, stacks, amplified, coils or gauges. Default: all.", show_default=False),
+        typer.Argument(
+            metavar="[SECTION]", help="Section to list: materials, stacks, amplified, coils or gauges. Default: all.", show_default=False
+        ),
     ] = None,
     *,
     json: Json = None,
 ) -> None:
     """List the shipped materials, actuators and sensors.
 
-    The list contains the source of each number. In a design file, like = "NAME" copies an entry.
+    The list contains the source of each number. In a design file, the key like = "NAME" copies an entry of this list.
     """
     require_writable([("--json", json)])
     known = shipped_catalogue() if section is None else find_section(shipped_catalogue(), section)

@@ -38,7 +38,7 @@ def design(
     prove: Annotated[bool, typer.Option("--prove", help="Verify the first three answers by finite elements.")] = False,
     tolerance: Annotated[bool, typer.Option("--tolerance", help="Compute the production yield of the first three answers.")] = False,
     loop: Annotated[
-        bool, typer.Option("--loop", help="Compute the sensitivity crossover of each control loop, for the first three answers.")
+        bool, typer.Option("--loop", help="Compute the lowest sensitivity crossover of the control loops of the first three answers.")
     ] = False,
     resume: Resume = False,
     workers: Workers = None,
@@ -46,9 +46,10 @@ def design(
     """Design stages for a specification.
 
     Theoretical bounds exclude impossible pairs of architecture and actuator. The other pairs are optimised within the requirements, with
-    corrections for elastic bodies and large displacements. Each design found (an answer) is written as a design file with a study.
+    corrections for elastic bodies and large displacements. The designs found are called answers. Each answer is written as a design file
+    with a study.
 
-    If no answer is found, the exit code is 1. An interrupted search keeps its results in the folder; --resume continues the search.
+    If no answer is found, the exit code is 1. An interrupted search keeps its results in the output folder; --resume continues the search.
     """
     if resume and output is None:
         raise refuse("--resume", "output folder missing", "Specify the folder of the interrupted search with --output")

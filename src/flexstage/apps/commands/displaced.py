@@ -62,7 +62,7 @@ def stroke(
     drive: Annotated[
         str,
         text_option(
-            "--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: the axis of the first required stroke, else platform.x."
+            "--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: the axis of the first required stroke, or platform.x."
         ),
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "First value of the drive. Default: 0, the static equilibrium.")] = "",
@@ -71,8 +71,8 @@ def stroke(
         text_option(
             "--to",
             "VALUE",
-            'Last value of the drive, e.g. "5 mm". Default: the required stroke; '
-            "without a required stroke, the full stroke of a driven stack, or 0.1 mm (1 mrad) for another coordinate.",
+            'Last value of the drive, e.g. "5 mm". Default: the required stroke; if no stroke is required, '
+            "the full stroke of a driven stack, 0.1 mm for another length, or 1 mrad for an angle.",
         ),
     ] = "",
     steps: Annotated[int | None, STEPS] = None,
@@ -80,8 +80,8 @@ def stroke(
 ) -> CommandResult:
     """Compute force, stiffness and frequencies over a stroke.
 
-    The model includes large displacements, weight and the loads of --load. Every point is an equilibrium with its own frequencies and
-    stiffness. Displacements are relative to the loaded equilibrium position.
+    The model includes large displacements, the weight and the loads that --load specifies. Force, stiffness and frequencies are computed at
+    a series of equilibria along the stroke. Displacements are relative to the static equilibrium under these loads.
     """
     model = nonlinear(mechanism)
     elsewhere, loads = bool(drive or start or end), loads_of(model, load or ())
@@ -145,9 +145,10 @@ def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """The critical `factor` of a growing `load` for the first of the `cases`, which are the requested load cases and stroke ends.
+    """Buckling of a stage under a growing `load`. `cases` are the requested load cases, also at stroke ends; the most critical is first.
 
-    `kind` is the kind of instability, `link` the name of a flexure that buckles individually, and `shape` the motion of each body.
+    `factor` is the critical load factor of the first case. `kind` is the kind of instability, `link` is the name of a flexure that buckles
+    individually, and `shape` is the motion of each body.
     """
 
     load: str
@@ -169,8 +170,8 @@ def buckle(
         text_option(
             "--scale-load",
             "NAME=VALUE",
-            'Load to increase until buckling, e.g. "platform.fx=-20 N". Several loads increase in proportion. Repeatable. '
-            "Default: with an operating point, the weight; otherwise every load case.",
+            'Load to increase until buckling, e.g. "platform.fx=-20 N". Several loads grow by the same factor. Repeatable. '
+            "Default: every load case; with --at, --load or --fixed, the weight.",
         ),
     ] = None,
     place: OperatingPointOptions,
@@ -183,10 +184,11 @@ def buckle(
 ) -> CommandResult:
     """Find the load at which the stage buckles.
 
-    The model includes large displacements. The critical point is a limit point, a bifurcation, or an imperfect bifurcation. All loads that
-    are not scaled, including the weight, are constant.
+    The model includes large displacements. The critical point is a limit point, a bifurcation, or an imperfect bifurcation. Loads that are
+    not scaled remain constant.
 
-    Without --scale-load and without an operating point, each load case is analysed at rest, and at both ends of all paths and strokes.
+    Without --scale-load, --at, --load and --fixed, each load case of the design is analysed at rest and at both ends of every load path. If
+    the design has no load paths, the stroke ends of the actuators replace the path ends.
     """
     cases = (_case(mechanism, place, scale_load or ()),) if scale_load or place.at or place.load or place.fixed else load_cases(mechanism)
     found = buckling_factors(mechanism, cases, temperature=place.warmth, demand=asked_factor(mechanism))
@@ -230,7 +232,7 @@ def _case(mechanism: Mechanism, place: OperatingPointOptions, scaled: Sequence[s
 def _unanswered(found: CaseFactors) -> Iterator[Finding]:
     """Reasons for a missing result: the stage has no load, or the only requested case has no factor."""
     if not found.cases:
-        what = "no weight, no specified forces and no paths with loads"
+        what = "the stage has no weight, no specified forces and no paths with loads"
         yield Finding("stage", what, 'Specify a load, e.g. --scale-load "platform.fz=-20 N"')
     elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
         yield Finding(found.cases[0].load, found.cases[0].why, "Specify another load, or another operating point")
@@ -241,7 +243,7 @@ def misalign(
     mechanism: Mechanism,
     *,
     instance: Annotated[
-        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link to the ground. Default: all, one by one.")
+        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link to the ground. Default: each of them, separately.")
     ] = "",
     rotation: Annotated[
         str,
@@ -264,10 +266,11 @@ def misalign(
 ) -> CommandResult:
     """Compute loads of a misaligned, over-constrained stage.
 
-    The fixed end of an instance or link is rotated or translated. Prints loads in all flexures, frequencies as functions of the
-    misalignment, and the critical misalignment at which the stage buckles.
+    The connection of one instance of a unit, or of one link, to the ground is rotated or translated. Prints loads in all flexures,
+    frequencies as functions of the misalignment, and the critical misalignment at which the stage buckles.
 
-    Without --instance, prints critical misalignment, load and stress of each instance, for all axes of rotation or for the specified axis.
+    Without --instance, every instance and link on the ground is misaligned separately. Prints the critical misalignment, load and stress of
+    each, for rotations about x, y and z or for the specified axis.
     """
     axis = _axis(rotation, translation)
     quantity = ANGLE if axis.startswith("r") else LENGTH

@@ -78,9 +78,9 @@ class Jobs:
         if len(running) >= _MOST:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
         if request.command in _STUDIES and request.study is None:
-            raise refuse(request.command, "study missing", "Write one, see docs/studies.md")
+            raise refuse(request.command, "study missing", "Write a study, see docs/studies.md")
         if request.command == _DESIGN and request.study is None:
-            raise refuse(request.command, "specification missing", "Fill in its form")
+            raise refuse(request.command, "specification missing", "Fill in the form")
         if (request.record or request.command == "identify") and not (request.record and self._is_file(request.record)):
             raise refuse(request.command, "record not found", "Name a file, relative to the folder of the design")
         for option in request.options:

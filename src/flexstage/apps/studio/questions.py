@@ -194,7 +194,7 @@ def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
     redundant = tuple(Fact(f"redundant {number}", ", ".join(each.constraints)) for number, each in enumerate(found.redundant, start=1))
     idle = tuple(Fact(", ".join(each.bodies), f"moves freely in {', '.join(each.links)}") for each in found.idle)
     blocked = tuple(
-        Fact(name, f"locked by {', '.join(each.against)}; free {(' and ' if each.together else ' or ').join(each.free)}")
+        Fact(name, f"locked by {', '.join(each.against)}; to unlock it, free {(' and ' if each.together else ' or ').join(each.free)}")
         for name, each in found.blocked.items()
     )
     locked = tuple(_locked(found.motion, known))

@@ -140,7 +140,7 @@ def errors(text: str, file: str) -> tuple[Problem, ...]:
 
 
 def warnings(text: str, file: str, revision: int) -> Warnings:
-    """Return the warnings about a design and its default values."""
+    """Return the warnings about a design, and the default values that it uses."""
     return Warnings(revision, _doubts(text, file))
 
 

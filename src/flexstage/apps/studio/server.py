@@ -1,4 +1,4 @@
-"""The studio's server of pages and their socket on the loopback address, for clients with the token."""
+"""The studio's server on the loopback address. It serves the pages, and the socket for pages with the token."""
 
 from __future__ import annotations
 

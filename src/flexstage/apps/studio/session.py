@@ -556,7 +556,9 @@ _FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "
 
 
 def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> float:
-    """Estimate the duration of a step [s] from its last duration (initially of a small design), scaled with the square of the link count.
+    """Estimate the duration of a step [s]: its last duration, scaled with the square of the number of links.
+
+    Before the first measurement, the duration for a small design is scaled.
 
     >>> expected("figures", 300, {}), expected("figures", 10, {"figures": (2.0, 20)})
     (10.0, 0.5)

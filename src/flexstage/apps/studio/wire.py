@@ -28,7 +28,7 @@ def encode(message: Said | Request) -> str:
 
 
 def decode(text: str | bytes, union: Any = Request) -> Any:
-    """Read a message from a text: a request, or another kind of message in `union`. Raises `DesignError` if a text is no message."""
+    """Read a message from a text: a request, or another kind of message in `union`. Raises `DesignError` if the text is not a message."""
     return _read(text, _kinds(union))
 
 

@@ -1,7 +1,7 @@
 """Jobs in worker processes, which isolate crashes, hangs and memory exhaustion from the caller.
 
-A `Worker` is a process that calls one function repeatedly. The process runs this module, not a copy of the caller. It thus works in
-notebooks, tests and scripts without a `__main__` guard. It always ends with its caller, and leaves no file.
+A `Worker` is a process that calls one function repeatedly. The process runs this module, not a copy of the caller. A worker thus works in
+notebooks, tests and scripts without a `__main__` guard. A worker always ends when its caller ends, and leaves no file.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ _MINUTES, _HOURS = 90.0, 2.0 * 3600.0
 """Times [s] from which minutes and hours are used."""
 
 LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
-"""Environment variable that enables progress lines of a command, and the prefix of each progress line."""
+"""`LINES`: environment variable that enables progress lines of a command. `LINE`: prefix of each progress line."""
 RESULT = "result"
 """Prefix of a line with one named part of the result as JSON. Such lines are printed only with progress lines."""
 

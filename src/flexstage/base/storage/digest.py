@@ -17,13 +17,13 @@ from flexstage.base.register import origin
 from flexstage.base.session import SESSION
 
 DOCUMENT_ONLY = {"physics": False}
-"""Field metadata: the field (a name, tags, sources) is not in the physics digest."""
+"""Field metadata that exclude a field (a name, tags, sources) from the physics digest."""
 
 WHERE_STATED = {"where_stated": True}
-"""Field metadata: digests omit the field if it is empty. Digests from before the field existed thus stay valid."""
+"""Field metadata: digests omit the field if it is empty. Digests that were computed before the field existed thus remain valid."""
 
 KEY = "key"
-"""Field metadata: key of the field in files and addresses, if it is a Python keyword."""
+"""Entry of field metadata: the name of the field in files and addresses, if this name is a Python keyword."""
 
 _KEPT = "_digests"
 _MANY = 64
@@ -90,7 +90,7 @@ def _is_single(value: Any) -> bool:
 
 
 def digest(value: Any, *, physics: bool = False) -> str:
-    """Return the SHA-256 of a description's content; with `physics`, only of the fields that affect the mechanics.
+    """Return the SHA-256 of a description's content or, if `physics` is true, of the fields that affect the mechanics.
 
     >>> digest(1.0) == digest(1.0), digest(1.0) == digest(1)
     (True, False)

@@ -1,8 +1,8 @@
 """Decomposition of results into labelled matrices and sheets, for CSV, pandas, xarray, MATLAB and notebooks.
 
 Each sheet or matrix has the path of its data in the document (`docs/json.md`). Records in a sequence or mapping are the rows of one sheet.
-Nested records are the rows of another sheet, which repeats the row names of the first sheet. An array along names has one row per name, any
-other array one row per entry.
+Nested records are the rows of another sheet, which repeats the row names of the first sheet. An array with named entries has one row per
+name; any other array has one row per entry.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class _Sort(Enum):
 
 @dataclass(frozen=True)
 class Sheet:
-    """Table of values: `names` are the columns of row names (empty for a single row), `columns` the column of values of each field."""
+    """Table of values: `names` contains the columns of row names (none for a single row), `columns` a column of values for each field."""
 
     names: Mapping[str, tuple[Any, ...]]
     columns: Mapping[Field, tuple[Any, ...]]

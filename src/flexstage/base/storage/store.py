@@ -299,7 +299,7 @@ def process_mark() -> str:
 def has_ended(mark: str, since: float) -> bool:
     """Return whether the process with a `process_mark` has ended; true for a mark of another machine.
 
-    `since` is a time [s since 1970] at which the process was running. A later process with the same number is a different one.
+    `since` is a time [s since 1970] at which the process was running. A process with the same number that started later does not count.
     """
     host, _, number = mark.partition("-")
     return host != _host() or not number.isdecimal() or not _is_running(int(number), since)

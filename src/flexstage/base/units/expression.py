@@ -1,7 +1,7 @@
 """Arithmetic expressions of numbers with units and of named numbers, with + - * / ( ), sqrt, sin, cos, tan only.
 
-A unit belongs to the number before it. It ends with its last unit name: `10 um/V` is one number, `10 um/arm` is a quotient. Values are
-floats, complex numbers or arrays with dimensions; the angle is a separate dimension.
+A unit belongs to the number before it. The unit extends to the last unit name: `10 um/V` is one number, `10 um/arm` is a quotient. Values
+are floats, complex numbers or arrays with dimensions; the angle is a separate dimension.
 """
 
 from __future__ import annotations
@@ -249,7 +249,7 @@ class _Parser:
         """Error of an unexpected token."""
         before, rest = self.text[: self.at].strip(), self.text[self.at :].strip()
         if not rest:
-            return ExpressionError(f'"{self.text.strip()}" ends too early', "Complete it")
+            return ExpressionError(f'"{self.text.strip()}" ends too early', "Complete the formula")
         name = _NAME.match(rest)
         after = f'after "{before}"' if before else "at its beginning"
         if name and before:

@@ -1,4 +1,4 @@
-"""Physical quantities: metadata of a field with its dimension, SI unit and display unit.
+"""Physical quantities: metadata that give the dimension, SI unit and display unit of a field.
 
 A description field is written `thickness: Annotated[Number, LENGTH, POSITIVE]`. File parsing, JSON Schema, tables and sign checks use this
 metadata.

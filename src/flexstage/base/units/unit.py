@@ -1,7 +1,7 @@
 """Conversion of strings with units to SI numbers and back. Inside the package every number is SI.
 
-The angle is a separate dimension: degrees are distinct from ratios, and rad/s from Hz. All arithmetic is exact (fractions). The value of a
-string is rounded only once, to the nearest float: "1.54 mm" is the float 0.00154.
+The angle is a separate dimension: degrees are distinct from ratios, and rad/s is distinct from Hz. All arithmetic is exact (fractions). The
+value of a string is rounded only once, to the nearest float: "1.54 mm" is the float 0.00154.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ _LONGEST = 60
 def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
     """Parse a string with a unit and return its SI value.
 
-    A ratio is a bare number or has "%". Zero needs no unit. Raises `DesignError` at `where` for a missing or unknown unit, a wrong
-    dimension, a temperature scale with an offset, or a number that is not finite.
+    A ratio is a number without a unit, or with "%". Zero needs no unit. Raises `DesignError` at `where` for a missing or unknown unit, a
+    wrong dimension, a temperature scale with an offset, or a number that is not finite.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH, STIFFNESS
     >>> parse("1.54 mm", LENGTH), parse("17 N/um", STIFFNESS), parse("5 %", RATIO)
@@ -46,8 +46,8 @@ def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
 def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: int | None = None) -> str:
     """Return an SI value as a string in `unit` (default: the quantity's display unit).
 
-    Without `digits`, the result is the shortest string that `parse` converts back to the same bits. For an array, the string contains the
-    range and size.
+    If `digits` is not specified, the result is the shortest string that `parse` converts back to the same bits. For an array, the string
+    contains the range and size.
 
     >>> from flexstage.base.units.quantity import LENGTH, STIFFNESS
     >>> show(0.00154, LENGTH), show(1.03e7, STIFFNESS, "N/mm"), show(2.0 / 3.0, LENGTH, digits=4)

@@ -30,7 +30,7 @@ class Resolution(CheckedFields):
     """Discretisation of a flexure: numbers of modes and points.
 
     `twist`, `across` and `bending` are the numbers of modes in twist, in bending about y, and in bending about z. `fields` are the numbers
-    of modes of the plate fields a2 and a4, each the response to a line load. `points` is the number of points along the flexure.
+    of modes of the plate fields a2 and a4; each mode is the response to a line load. `points` is the number of points along the flexure.
     """
 
     twist: int = 6
@@ -42,7 +42,7 @@ class Resolution(CheckedFields):
 
 DEFAULT = Resolution()
 STRESSES = Resolution(twist=3, across=4, bending=4)
-"""Default resolution for hinges of varying compliance. At zero load, moments of degree 0 and 1 are exact; two more are for loads.
+"""Default resolution for hinges of varying compliance. Moments of degree 0 and 1 are exact at zero load; higher degrees are for loads.
 """
 
 
@@ -50,18 +50,19 @@ STRESSES = Resolution(twist=3, across=4, bending=4)
 class FlexureLaw:
     """Tables of a flexure (docs/nonlinear.md, 3). The leading axes (...) index flexures with equal numbers of modes.
 
-    - `form` (..., q, q): second derivative of the quadratic energy with respect to the q amplitudes: first k of curvature modes, then e of
-      plate modes.
+    - `form` (..., q, q): second derivative of the quadratic energy with respect to the q amplitudes, which are those of k curvature modes,
+      then of e plate modes.
     - `modes` (..., n, 3, k): three curvatures due to unit amplitudes, at the n points of the integration rule; `inner` (..., 3 (n + 1), 3,
-      k): the same at the points of the rotation steps.
+      k): the same curvatures at the integration points of the rotation steps.
     - `plate` (..., n, 2, e): the plate fields a2 and a4 (bending across the width) due to unit amplitudes, at the n points.
     - `compliance` (..., n, 3): flexibilities in tension and in shear along y and z, times the bending rigidity, divided by L^2.
     - `trapeze` (...): I_p / (A L^2), with the polar second moment I_p and area A of the section, and the length L.
-    - `stretch` (..., 2): the stiffness against Gaussian curvature.
+    - `stretch` (..., 2): the stiffnesses against Gaussian curvature, the constants c_2 and c_4 of docs/nonlinear.md, 13.
     - `length` L [m], and bending `rigidity` about z [N m^2]; they make the tables dimensionless.
     - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].
     - `half` (..., 2): half thickness and half width [m].
-    - `shearing` (...): largest shear stress over shear modulus, twist rate and half thickness: 2 in a strip, 1 in a round section.
+    - `shearing` (...): largest shear stress, divided by the shear modulus, the twist rate and the half thickness; 2 in a strip, 1 in a
+      round section.
     - `natural` (..., 2): natural curvatures about z and across the width, times the length.
     - `rest` (..., q): the negative first derivative of the energy with respect to the amplitudes, due to the natural curvatures.
     """

@@ -1,4 +1,4 @@
-"""Flexure law of a part at large displacements. Other parts have only a 6x6 stiffness matrix about the centre."""
+"""Flexure law of a part that bends, for large displacements. All other parts have only a 6x6 stiffness matrix about the centre."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""Clamped strip: curvature of a leaf's section across its width, in even shapes of Legendre's P2 and P4 with Mindlin shear.
+"""Clamped strip: bending of a leaf across its width in two even shapes (Legendre polynomials P2 and P4), with Mindlin shear.
 
-Across the width b the deflection is w(x, z) = W - theta z + a2 phi2 + a4 phi4, phi_j = (b^2 / 12) P_j(2 z / b).
+Across the width b the deflection is w(x, z) = W - theta z + a2 phi2 + a4 phi4, phi_j = (b^2 / 12) P_j(2 z / b). W is the deflection of the
+centre line, theta the twist angle.
 
 The shapes have zero mean and are therefore orthogonal to W''; phi2'' = 1. At clamped ends, the amplitudes and the section rotations psi of
 each shape are constrained (docs/nonlinear.md, 10).

@@ -31,8 +31,8 @@ class Modes:
 def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
     """Compute the shapes of the twist rate under restrained warping (docs/nonlinear.md, 9).
 
-    The shapes are P_k - cosh(c u) / cosh(c) for even k, and P_k - sinh(c u) / sinh(c) for odd k. P_k are the Legendre polynomials of u = 2
-    s - 1, with the position s from 0 to 1.
+    The shapes are P_k - cosh(c u) / cosh(c) for even k, and P_k - sinh(c u) / sinh(c) for odd k. P_k are the Legendre polynomials of u,
+    where u = 2 s - 1 and s is the position from 0 to 1.
 
     `decay` c (...) is half the length times sqrt(G J / (E C_w)), with the torsional rigidity G J and the warping rigidity E C_w. The
     computation does not overflow for large c.
@@ -51,7 +51,7 @@ def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
 
 
 def orthonormal(modes: Modes, weights: Array) -> Modes:
-    """Orthonormalise functions with respect to the integral with `weights` (p,) at their p points.
+    """Orthonormalise functions, given at p points, with respect to the integral with the `weights` (p,) of these points.
 
     In short wide leaves, the functions of `restrained_twist_modes` are nearly linearly dependent, which would amplify rounding errors.
 

@@ -29,7 +29,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
         typer.Argument(help="File of the test: universal file, MAT, HDF5 or CSV.", metavar="RECORD", show_default=False),
     ],
     *,
-    volts: Annotated[str | None, text_option("--volts", "NAME", "Channel of the voltage. Default: the channel in V.")] = None,
+    volts: Annotated[str | None, text_option("--volts", "NAME", "Channel of the voltage. Default: the channel with the unit V.")] = None,
     stroke: Annotated[
         str | None, text_option("--stroke", "NAME", "Channel of the stroke. Default: the channel with a unit of length.")
     ] = None,
@@ -40,12 +40,12 @@ def hysteresis(  # noqa: PLR0913 (its options)
     units: Units = None,
     rate: Rate = None,
     arrays: Arrays = None,
-    output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for `loop`.")] = None,
+    output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for flexstage loop.")] = None,
 ) -> CommandResult:
     """Identify the hysteresis of a stack.
 
-    Fits an invertible Prandtl-Ishlinskii model to a record of voltage and stroke. The model is validated on sections of the record left out
-    of the fit.
+    Fits an invertible Prandtl-Ishlinskii model to a record of voltage and stroke. The model is validated on sections of the record that the
+    fit does not use.
 
     With a step record, the command also fits the creep.
     """
@@ -73,6 +73,6 @@ def _volts(limits: tuple[str, str]) -> tuple[float, float]:
     low, high = (parse(text, VOLTAGE, where="--limits") for text in limits)
     if low >= high:
         raise refuse(
-            "--limits", f"no range (got {limits[0]} to {limits[1]}, expected the lower voltage first)", "Exchange the two voltages"
+            "--limits", f"not a range (got {limits[0]} to {limits[1]}, expected the lower voltage first)", "Exchange the two voltages"
         )
     return low, high

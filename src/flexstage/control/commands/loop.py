@@ -64,20 +64,22 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         text_option(
             "--export",
             "FILE",
-            "Exported file: plant.mat, controller.c, controller.fmu, stage.loop.fmu (whole loop); path.csv with --tracking. Repeatable.",
+            "File to export: the plant (.mat), the controller (.c, .fmu), the whole loop (.loop.fmu), or the path of --tracking (.csv). "
+            "Repeatable.",
         ),
     ] = None,
     hardware: Annotated[Path | None, text_option("--hardware", "FILE.c", "Write the controller in C: FILE.c, FILE.h, FILE_test.c.")] = None,
     full: Full = False,
     float32: Annotated[bool, typer.Option("--float32", help="Use 32-bit floating-point numbers in the code of --hardware.")] = False,
-    example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Commented set-up file to write, without a computation.")] = None,
+    example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Commented set-up file to write; nothing is computed.")] = None,
 ) -> CommandResult | None:
     """Close the control loop of a stage.
 
     Tunes a controller, and prints bandwidth, stability margins, settling time and positioning noise by source.
 
-    By default, the plant is the lumped model, sampled at 10 kHz with one sample of delay. The controller is PI with notch filters, or PID
-    for force-driven stages. An optimisation with a peak sensitivity of at most 6 dB tunes the controller; --quick omits the optimisation.
+    By default, the plant is the lumped model, sampled at 10 kHz with one sample of delay (fast stages: at a higher rate). The controller is
+    PI with notch filters, or PID for force-driven stages. The controller is tuned by optimisation with a peak sensitivity Ms of at most 2
+    (6 dB). With --quick, it is tuned without optimisation.
 
     With --at, --load, --fixed or --temperature, the plant is linearised at that operating point.
 

@@ -42,9 +42,9 @@ class Decentralised(CheckedFields):
     def system(self, step: float | None = None) -> System:
         """Return the controller as a linear system.
 
-        Inputs are `error.<c>`, `pose.<c>` (only if a law uses it), `reference.<c>` (with `feedforward` or `prefilters`) and
-        `applied.<actuator>` (applied minus commanded input). Outputs are `command.<actuator>`. Raises `DesignError` for a law that is too
-        fast for the sampling rate.
+        For each coordinate c, the inputs are `error.<c>`, `pose.<c>` (only if a law uses it) and `reference.<c>` (only with `feedforward`
+        or `prefilters`). For each actuator, `applied.<actuator>` is a further input: the applied input of the actuator minus its commanded
+        input. Outputs are `command.<actuator>`. Raises `DesignError` for a law that is too fast for the sampling rate.
 
         >>> from flexstage.control.controllers.pi import PI
         >>> from flexstage.control.controllers.loops import platform_loops
@@ -79,7 +79,7 @@ class Decentralised(CheckedFields):
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
-    """Return one system per loop, control law and notches in series: inputs `error`, `pose` and `applied`, output `command` [m].
+    """Return one system per loop from `error`, `pose` and `applied` to `command` [m]: its control law and its notches in series.
 
     >>> from flexstage.control.controllers.pi import PI
     >>> from flexstage.control.controllers.loops import platform_loops

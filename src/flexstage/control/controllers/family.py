@@ -38,7 +38,9 @@ class Family:
 
 
 def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:
-    """Solve |k/s - Q| |g| = 1 at s = j `turning` for the integral gain k [1/s], with pose feedback Q and plant gain g; or return None.
+    """Solve |k/s - Q| |g| = 1 at s = j `turning` for the integral gain k [1/s].
+
+    Q is the `feedback` of the pose, and g is the plant's complex gain at the crossover. Returns None if no k > 0 solves the equation.
 
     >>> round(tracking_gain(Place(1.0, 0.5 + 0.0j, 1.0, None), 2.0, 0.0j), 9)
     4.0

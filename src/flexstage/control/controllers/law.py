@@ -65,7 +65,7 @@ def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator
 
 
 def corner_findings(kind: str, noun: str, corner: float, step: float | None, otherwise: str = "") -> Iterator[Finding]:
-    """Return a finding if a corner [Hz] of a law is not below half the sampling rate.
+    """Return a finding if a corner frequency [Hz] of a law is not below half the sampling rate.
 
     >>> [each.what for each in corner_findings("PID", "its filter at", 900.0, 1e-3)]
     ['its filter at 900 Hz is not below half the sampling rate, 500 Hz']

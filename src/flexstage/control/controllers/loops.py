@@ -20,7 +20,7 @@ _DEPENDENT = 1e-6
 class Loops:
     """Coordinates of k single loops: loop errors = `sense` (k, f) times coordinate errors, strokes = `drive` (n, k) times loop commands.
 
-    Loop errors and commands are in metres: in static equilibrium a loop's pose equals its command, except for lost motion.
+    Loop errors and loop commands are in metres. In static equilibrium, a loop's pose equals its command, except for lost motion.
     """
 
     names: tuple[str, ...]
@@ -31,9 +31,9 @@ class Loops:
 
 @check_arguments
 def actuator_loops(coordinates: Coordinates) -> Loops:
-    """Define one loop for each actuator, with `sense` = R_a and `drive` = I; R_a maps coordinates to strokes.
+    """Define one loop for each actuator: `sense` is R_a, the matrix from coordinates to strokes, and `drive` is the unit matrix.
 
-    Raises `DesignError` if there are more actuators than coordinates, because the gauges could not observe all integrators.
+    Raises `DesignError` if there are more actuators than coordinates: some of the loops' integrators would then not be observable.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -50,9 +50,10 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
 
 @check_arguments
 def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Loops:
-    """Define one loop for each platform motion: `sense` = S, `drive` = R_a S^-1; S multiplies rotations by the stage's length.
+    """Define one loop for each platform motion, with `sense` = S and `drive` = R_a S^-1.
 
-    R_a maps coordinates to strokes. `strokes` (n, f) replaces R_a, for example with gains that correct lost motion.
+    The diagonal matrix S multiplies rotations by the stage's length. The matrix R_a maps coordinates to strokes. If the matrix `strokes`
+    (n, f) is specified, it replaces R_a, for example by gains that correct lost motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -103,10 +104,11 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
 def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None = None) -> Loops:
     """Define one loop for each of the platform's modes, with `sense` = Phi^-1 and `drive` = R_a Phi.
 
-    `shapes` (6, f) are the platform's twists in these modes, of any scale: columns of `Modes.platform_shapes` that `loop_modes` selects.
-    Phi are their components along the coordinates, scaled. R_a maps coordinates to strokes; `strokes` (n, f) replaces it. With massless
-    links the loops are exactly decoupled oscillators with a static gain of 1. Lost motion and the masses of the actuation units cause
-    crosstalk. Raises `DesignError` for shapes that do not span the coordinates.
+    `shapes` (6, f) contains the platform's twists in these modes. They are the columns of `Modes.platform_shapes` that `loop_modes`
+    selects; their scale is arbitrary. Phi contains the components of these twists along the coordinates. Each twist is scaled so that its
+    largest component is 1, with rotations multiplied by the stage's length. The matrix R_a maps coordinates to strokes; if the matrix
+    `strokes` (n, f) is specified, it replaces R_a. With massless links the loops are exactly decoupled oscillators with a static gain of 1.
+    Lost motion and the masses of the actuation units cause crosstalk. Raises `DesignError` for shapes that do not span the coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates

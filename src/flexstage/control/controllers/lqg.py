@@ -16,7 +16,7 @@ from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 DOUBLINGS, _SETTLED = 30, 1e-15
-"""Maximum number of doublings, 2^30 samples (a day at 10 kHz), and the relative change at which doubling stops."""
+"""Maximum number of doublings (30 doublings give 2^30 samples, a day at 10 kHz), and the relative change at which doubling stops."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class Disturbances:
-    """White-noise densities that the observer assumes: `strokes` [m/Hz^(1/2)] of every command, and `gauges` of each gauge by name."""
+    """White-noise densities that the observer assumes: `strokes` [m/Hz^(1/2)] for every command, and `gauges` for each gauge, by name."""
 
     strokes: float
     gauges: Mapping[str, float]
@@ -46,10 +46,10 @@ class LQG:
 
     u are the commands, x^ the estimated states, z the integral of the error e, and r the reference. The matrices A, B and C belong to the
     sampled `model` from u = `command.<actuator>` to y = `pose.<c>`. The estimate is x^ = x- + M (y - C x-), with the prediction x- = A x^ +
-    B u from the previous sample. The next z is z + T e, with the sampling period T. `regulator` is K (n, s), `integral` K_z (n, f),
-    `observer` M (s, f). `feedforward` (n, f) maps a reference to static strokes and determines N (default: no feedforward). `tracking` [s]
-    is the anti-windup time of the integrators. The observer uses the applied strokes, and needs no anti-windup. `weights` are the design
-    weights. `expected` are the disturbances that the observer assumes, if known.
+    B u from the previous sample. The next z is z + T e, with the sampling period T. The gain matrices are `regulator` K (n, s), `integral`
+    K_z (n, f) and `observer` M (s, f). `feedforward` (n, f) maps a reference to static strokes and determines N (default: no feedforward).
+    `tracking` [s] is the anti-windup time of the integrators. The observer uses the applied strokes, and needs no anti-windup. `weights`
+    are the design weights. `expected` are the disturbances that the observer assumes, if known.
     """
 
     model: System
@@ -79,7 +79,7 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
     The gains K and K_z of `LQG` follow from the algebraic Riccati equation of the model with integrators of the error. The observer gain M
     follows from the Riccati equation of the model with its noise (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). Noise of
     one-sided density G is white up to half the sampling rate: with the sampling period T, a sample has the variance G^2/(2 T). Raises
-    `DesignError` for a continuous model, gauges without noise, and an undamped mode that is not controllable or observable.
+    `DesignError` for a continuous model, gauges without noise, and an undamped mode that is not controllable or not observable.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -123,7 +123,9 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
 
 
 def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
-    """Compute the gain M (s, f) of the Kalman filter. Stroke noise that the model transmits directly correlates state and output noise.
+    """Compute the gain M (s, f) of the Kalman filter.
+
+    Stroke noise acts on the states and, through the direct term D of the model, on the outputs. State and output noise are then correlated.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -228,7 +230,7 @@ def _sampled_system(control: LQG) -> System:
 
 
 def with_feedforward_states(control: System, given: LQG) -> System:
-    """Add feedforward to a controller: static strokes for the reference, plus the regulator gain times the static states they cause.
+    """Add feedforward to a controller: static strokes for the reference, plus the regulator gain times the states due to these strokes.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop

@@ -21,7 +21,7 @@ _FAR = 0.1
 
 @dataclass(frozen=True)
 class Notch(CheckedFields):
-    """Notch filter (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
+    """Notch filter (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from w.
 
     `damping` zeta is the damping ratio of the poles. The gain is below 1/sqrt(2) in a band with a width of about 2 zeta times the
     frequency. A depth of zeta_m / zeta cancels a mode with the damping ratio zeta_m: the notch's poles replace the mode's poles. Raises
@@ -68,9 +68,10 @@ class Notch(CheckedFields):
 
 @check_arguments
 def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> Notch:
-    """Compute the notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`. Its depth is `ratio` / `damping`.
+    """Compute the notch filter that cancels a mode with the natural `frequency` [Hz] and the damping `ratio`.
 
-    A mode with more damping than the notch's poles needs no notch: the result then has depth 1.
+    The notch's zeros cancel the poles of the mode. The notch's poles have the damping ratio `damping`, and its depth is `ratio` /
+    `damping`. A mode with more damping than the notch's poles needs no notch: the result then has depth 1.
 
     >>> notch_of_mode(110.9, 0.01).depth.__round__(4)
     0.0143

@@ -53,10 +53,10 @@ class PID(CheckedFields):
     def system(self, step: float | None = None) -> System:
         """Return the linear system (see `Law`), discretised by Tustin's rule.
 
-        Raises `DesignError` for a filter above half the sampling rate.
+        Raises `DesignError` if `filter` is not below half the sampling rate, and for a tracking time below one sample.
         """
         require(slow_tracking_findings("PID", self.tracking, step))
-        require(corner_findings("PID", "the derivative's filter at", self.filter, step, ", or lower the filter") if self.derivative else ())
+        require(corner_findings("PID", "the filter corner at", self.filter, step, ", or lower the corner") if self.derivative else ())
         corner = 2.0 * np.pi * self.filter
         high = self.derivative * corner
         A, B = np.diag([0.0, -corner]), np.array([[self.integral, 0.0, tracking_rate(self.tracking_time, step)], [corner, 0.0, 0.0]])

@@ -64,7 +64,7 @@ class PositiveFeedback:
         return law_system(A, B, C, np.zeros((1, 3)), step, kept=[True, True, self.tracking != 0.0])
 
     def feedback(self, rate: complex) -> complex:
-        """Compute the filter's transfer function from pose to command at a complex rate s [1/s]."""
+        """Compute the filter's transfer function from pose to command at a complex frequency s [1/s]."""
         w = 2.0 * np.pi * self.frequency
         return (self.velocity * rate + self.position * w**2) / (rate**2 + 2.0 * self.damping * w * rate + w**2)
 
@@ -72,8 +72,8 @@ class PositiveFeedback:
 def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
     """Place the poles of an undamped mode and of the filter at the roots of (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w.
 
-    The mode is w^2 g / (s^2 + w^2), with g = `static`. Both pole pairs get the damped frequency w and the decay rate sigma. The filter's
-    four parameters determine the four poles (Bhikkaji, Ratnam, Fleming & Moheimani 2007).
+    The mode is w^2 g / (s^2 + w^2), with w = 2 pi `frequency` and g = `static`. Both pole pairs get the damped frequency w and the decay
+    rate sigma. The filter's four parameters determine the four poles (Bhikkaji, Ratnam, Fleming & Moheimani 2007).
 
     >>> law = place_poles(100.0, 0.2)
     >>> w = 200.0 * np.pi

@@ -26,8 +26,8 @@ class Prefilter(CheckedFields):
 
     Without a `lead` the numerator is 1. The static gain is 1. The prefilter is the second degree of freedom of a loop (Astrom and
     Haegglund, Advanced PID Control, 2006, section 3.4). A control law with strong integral action has a zero at s = -k_i/k_p, which causes
-    overshoot. The prefilter F reduces the overshoot, but does not change sensitivity, margins or noise. Raises `DesignError` for invalid
-    numbers.
+    overshoot. The prefilter F reduces the overshoot, but does not change sensitivity, margins or noise. Raises `DesignError` for numbers
+    that are not positive.
 
     >>> gains = Prefilter(frequency=90.0, damping=1.0).system().transfer(np.array([0.0, 90.0]))
     >>> abs(gains.ravel()).round(12).tolist()  # 1/(2 zeta) there
@@ -48,7 +48,7 @@ class Prefilter(CheckedFields):
         )
 
     def system(self, step: float | None = None) -> System:
-        """Return the filter from `reference` to `shaped`, by Tustin's rule, prewarped if `frequency` is below 0.4 of the sampling rate."""
+        """Return the filter from `reference` to `shaped`, by Tustin's rule (prewarped if `frequency` is below 0.4 of the sampling rate)."""
         omega = 2.0 * np.pi * self.frequency
         A = np.array([[0.0, omega], [-omega, -2.0 * self.damping * omega]])
         slope = 0.0 if self.lead is None else self.frequency / self.lead
@@ -61,8 +61,8 @@ class Prefilter(CheckedFields):
 def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates) -> System:
     """Add one prefilter per loop to a controller: the filtered reference S^+ F S r replaces the reference r.
 
-    F are the prefilters, S = `sense` (k, f) maps to loop coordinates, and S^+ is its pseudoinverse. The error relative to the filtered
-    reference, e + (S^+ F S - 1) r, replaces the error e. Adds inputs `reference.<c>` if the controller has none.
+    F are the prefilters, S = `sense` (k, f) maps coordinates to loops, and S^+ is the pseudoinverse of S. The error relative to the
+    filtered reference, e + (S^+ F S - 1) r, replaces the error e. Adds inputs `reference.<c>` if the controller has no such inputs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates

@@ -20,11 +20,11 @@ from flexstage.control.systems.system import System
 class IntegralResonant(CheckedFields):
     """Integral resonant control u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): damping by positive feedback, tracking by an integrator.
 
-    An integrator -k/s around G - d, a plant G with feed-through, is equivalent to Q around the plant G (Aphale, Fleming & Moheimani 2007;
-    Fleming, Aphale & Moheimani 2010). The fields are `gain` k [1/s], `feedthrough` d [1] (positive, because it is subtracted) and
-    `tracking` k_t [1/s]. y is the loop's pose [m], e its error, u its command. The static gain of Q is 1/d; therefore the loop is stable
-    only if d exceeds the plant's static gain. The anti-windup time is `tracking_time` [s], by default 1/k_t. Raises `DesignError` for
-    negative gains, and for a feed-through that is not positive.
+    The command u [m] of the loop is computed from the pose y [m] and the error e [m] of the loop. The fields are `gain` k [1/s],
+    `feedthrough` d [1] and `tracking` k_t [1/s]. The feed-through d is positive, and it is subtracted from the plant G. An integrator -k/s
+    in feedback around G - d is equivalent to Q in feedback around G (Aphale, Fleming & Moheimani 2007; Fleming, Aphale & Moheimani 2010).
+    The static gain of Q is 1/d; therefore the loop is stable only if d exceeds the plant's static gain. The anti-windup time is
+    `tracking_time` [s], by default 1/k_t. Raises `DesignError` for negative gains, and for a feed-through that is not positive.
 
     >>> control = IntegralResonant(gain=1000.0, feedthrough=2.0, tracking=100.0)
     >>> control.system().transfer(np.array([0.0001]))[0, 0, 1].real.round(6).item()  # 1/d at rest
@@ -47,7 +47,7 @@ class IntegralResonant(CheckedFields):
     def system(self, step: float | None = None) -> System:
         """Return the linear system (see `Law`), discretised by Tustin's rule.
 
-        Raises `DesignError` for a corner above half the sampling rate.
+        Raises `DesignError` if the corner k d/(2 pi) of Q is not below half the sampling rate, and for a tracking time below one sample.
         """
         pole = self.gain * self.feedthrough
         require(slow_tracking_findings("integral resonant control", self.tracking_time, step))
@@ -63,11 +63,11 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """Compute gains that damp an undamped mode at `frequency` [Hz] to the ratio zeta = `damping`, the maximum for the feed-through d.
+    """Compute gains that damp an undamped mode at `frequency` [Hz] to the damping ratio zeta = `damping`.
 
-    The mode's angular frequency is w_p, and the plant's static gain is g = `static`. Then k d = w_p (1 + 2 zeta)^(1/2) and d = g (1 + 2
-    zeta)^2 / ((1 + 2 zeta)^2 - 1) (Namavar, Fleming & Aphale 2014). The gain k_t [1/s] is `tracking`. Raises `DesignError` for numbers that
-    are not positive.
+    With the feed-through d, zeta is the largest damping ratio that any gain k reaches. The mode's angular frequency is w_p, and the plant's
+    static gain is g = `static`. Then k d = w_p (1 + 2 zeta)^(1/2) and d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1) (Namavar, Fleming &
+    Aphale 2014). The gain k_t [1/s] is `tracking`. Raises `DesignError` for numbers that are not positive.
 
     >>> control = resonant_law(100.0, damping=0.5 * (2.0**0.5 - 1.0))
     >>> round(control.feedthrough, 9), round(control.gain * control.feedthrough / (200.0 * np.pi), 4)  # 2, and 2^(1/4)

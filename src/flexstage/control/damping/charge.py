@@ -23,10 +23,10 @@ from flexstage.models.linear.model import Channel, LinearModel
 class ChargedStacks:
     """Stacks of `actuators` at constant charge: above the corner frequency they are stiffer than at constant voltage.
 
-    `stiffer` (n,) is the ratio of the stiffnesses, 1/(1 - k^2), with the electromechanical coupling factor k of a stack. Below the
-    frequencies `corners` (n,) [Hz], the drive acts as a voltage drive. Above them, the fractions `residual_hysteresis` (n,) of hysteresis
-    and creep remain. `by_volts` (m,) and `by_charge` (m,) [Hz] are the plant's modal frequencies at constant voltage and at constant
-    charge.
+    `stiffer` (n,) is the stiffness at constant charge divided by the stiffness at constant voltage: 1/(1 - k^2), with the electromechanical
+    coupling factor k of a stack. Below the corner frequencies `corners` (n,) [Hz], the drive acts as a voltage drive. Above the corner
+    frequencies, the fractions `residual_hysteresis` (n,) of hysteresis and creep remain. `by_volts` (m,) and `by_charge` (m,) [Hz] are the
+    plant's modal frequencies at constant voltage and at constant charge.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -45,7 +45,7 @@ class ChargedStacks:
 
     @property
     def rise(self) -> Annotated[Array, INNER, Heading("change", digits=3, unit="%")]:
-        """Relative change (m,) of the modes' frequencies."""
+        """Relative change (m,) of the modal frequencies, from constant voltage to constant charge."""
         return self.by_charge / self.by_volts - 1.0
 
 
@@ -76,9 +76,9 @@ def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, Charge
 
     The result is exact at every frequency. Symbols are those of `at_constant_charge`. The drive imposes the current (s C + 1/R) v that a
     voltage v would cause in the unloaded stack with the leakage resistance R (Fleming & Leang, Design, Modeling and Control of
-    Nanopositioning Systems, 2014, ch. 12). With the corner w_0 = 1/(R C), the elongation is u = (1 - kappa^2 s/(s + w_0)) F/k + d v: the
-    elongation at constant charge plus kappa^2 w_0/(s + w_0) F/k. `legs` have the stiffness k at constant voltage. The result has only the
-    link forces named in `kept`.
+    Nanopositioning Systems, 2014, ch. 12). With the corner w_0 = 1/(R C), the elongation is u = (1 - kappa^2 s/(s + w_0)) F/k + d v. This
+    is the elongation at constant charge plus kappa^2 (w_0/(s + w_0)) (F/k). `legs` have the stiffness k at constant voltage. The result
+    has only the link forces named in `kept`.
     """
     inner = [_leak(each, drives[each.actuator]) for each in legs]
     gone = {f"{each.link}.fx" for each in legs} - {f"{name}.fx" for name in kept}

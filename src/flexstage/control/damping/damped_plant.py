@@ -29,8 +29,8 @@ _SLOW, _LINES = 1e-3, 200
 class DampedMode:
     """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, `damped_frequency` and `damped_ratio` with them.
 
-    `zero` z [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio for one leg or decoupled legs:
-    (w - z)/(2 z), with w = `frequency`. `alone` is the damping ratio that the present gain would give this mode if it were the only mode.
+    `zero` z [Hz] is the mode's frequency without the stacks' axial stiffness. `most` is the maximum damping ratio for one leg or decoupled
+    legs: (w - z)/(2 z), with w = `frequency`. `alone` is the damping ratio that the present gain would give this mode without other modes.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -38,8 +38,8 @@ class DampedMode:
         "frequency zero ratio most alone damped_frequency damped_ratio",
         notes=(
             (
-                "The transmission zero z is the mode's frequency without the stacks' axial stiffness, w with it. The maximum damping, "
-                "(w - z)/(2 z), is for one leg or decoupled legs. Isolated mode: no other modes, structural damping or amplifier lag."
+                "The mode frequency is w, or z (transmission zero) without the stacks' axial stiffness. The maximum damping (w - z)/(2 z) "
+                "holds for one leg or decoupled legs. Damping, isolated mode: without other modes, structural damping and amplifier lag."
             ),
         ),
     )
@@ -58,10 +58,10 @@ class ActiveDamping:
     """Integral force feedback in the `legs` with `gain` [1/s]; its high-pass filter has a `corner` frequency [Hz] and an `order`.
 
     `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the fraction of the platform's static stiffness that
-    remains with the feedback. `softest` is the lowest fraction of the dynamic stiffness that remains at frequencies up to half the first
-    mode's; it occurs at `softest_at` [Hz]. Below the frequency `kept_below` [Hz], a leg keeps more than half its axial stiffness. `rate`
-    [Hz] is the sampling rate, None for analogue feedback. `reached` is the lowest damping ratio of the dominant modes: those with the
-    largest residues, as many as the loop has coordinates.
+    remains with the feedback. `softest` is the lowest remaining fraction of the dynamic stiffness, at frequencies up to half the first
+    modal frequency; it occurs at `softest_at` [Hz]. Below the frequency `kept_below` [Hz], a leg keeps more than half its axial stiffness.
+    `rate` [Hz] is the sampling rate, None for analogue feedback. `reached` is the lowest damping ratio of the dominant modes. The dominant
+    modes are the modes with the largest residues, as many as the loop has coordinates.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -161,8 +161,8 @@ def _modal_poles(given: Plant) -> Array:
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:
     """Compute the lowest gain [1/s] that gives all dominant modes (see `dominant_modes`) at least the damping ratio `wanted`.
 
-    If no gain reaches `wanted`, returns the gain of maximum damping. If the inner loops are unstable at this gain, it is reduced. Raises
-    `DesignError` if the inner loops are unstable even at the lowest gain tried.
+    If no gain reaches `wanted`, returns the gain of maximum damping. If the inner loops are unstable at the gain found, the gain is reduced
+    until they are stable. Raises `DesignError` if the inner loops are unstable even at the lowest gain tried.
     """
     dominant = dominant_modes(given)
     scale = 2.0 * np.pi * float(np.median(given.frequencies[dominant]))
@@ -193,7 +193,10 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """Summarise the inner loops' effect on modes and platform stiffness. `pairs` pairs the modes with and without axial leg stiffness."""
+    """Summarise the inner loops' effect on modes and platform stiffness.
+
+    `pairs` pairs each mode with axial leg stiffness and a mode without this stiffness.
+    """
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []

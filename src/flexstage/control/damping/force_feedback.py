@@ -1,4 +1,4 @@
-"""Integral force feedback (IFF): the leg extends at a rate proportional to its tension, which damps every mode that strains it."""
+"""Integral force feedback (IFF): a leg extends at a rate proportional to its tension. This damps every mode that strains the leg."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class ForceFeedback:
         return np.polymul(found, [1.0, 6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else found
 
     def at(self, rates: Array) -> Array:
-        """Compute the feedback law G at complex s [1/s]."""
+        """Compute the feedback law G at complex frequencies s = `rates` [1/s]."""
         return np.polyval(self.numerator, rates) / np.polyval(self.denominator, rates)
 
     def system(self, stiffness: float, tension: Channel, stroke: Channel) -> System:
@@ -73,7 +73,7 @@ class ForceFeedback:
 
     @property
     def kept_below(self) -> float:
-        """Frequency [Hz] below which a leg keeps over half its stiffness. Order 2: a^2 / (2 pi g); order 1: 0 if g > a, else infinite."""
+        """Frequency [Hz] below which a leg keeps over half its stiffness: a^2 / (2 pi g) for order 2; 0 (g > a) or infinite for order 1."""
         turning = 2.0 * np.pi * self.corner
         if self.order == 1:
             return 0.0 if self.gain > turning else np.inf

@@ -40,7 +40,7 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (),
 
     With `gauges`, returns only the legs that have one of these strain gauges. A gauge on a stack also reads the free stroke; therefore the
     commanded stroke is subtracted from the reading. A gauge elsewhere in the leg reads only the tension. Raises `DesignError` for stages
-    without stacks, models without link forces (both at the key `asked`), and gauges outside the legs.
+    without stacks, models without link forces, and gauges outside the legs. `asked` is the key that the first two errors name.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -98,7 +98,7 @@ class Pairs:
 
 
 def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
-    """Pair modes with and without the legs' axial stiffness by the similarity of their shapes (kinetic energy).
+    """Pair modes with the legs' axial stiffness and modes without, by the mass-weighted similarity of their shapes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -111,7 +111,7 @@ def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
 
 
 def pair_modes(model: LinearModel, other: LinearModel) -> Pairs:
-    """Pair modes of two models with equal masses by the similarity of their shapes (kinetic energy)."""
+    """Pair modes of two models with equal masses, by the mass-weighted similarity of their shapes."""
     stiff, soft = eigen(model), eigen(other)
     alike = (stiff.shapes.T @ model.inertia_matrix @ soft.shapes) ** 2
     rows, columns = scipy.optimize.linear_sum_assignment(-alike)

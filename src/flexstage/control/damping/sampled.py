@@ -17,8 +17,8 @@ class SampledLegs:
 
     The law G(s) of `ForceFeedback` is discretised by Tustin's rule. Each tension is multiplied by its gain and filtered by the low-pass
     filter a / (s + a). `gains` (m,) [m/N] are g / (a k), with the gain g, the corner a [1/s] and a leg's axial stiffness k. For order 2, an
-    equal second filter follows, and its output is subtracted from its input. The computation is accurate in single precision even if a T is
-    small. `share` is a T / (2 + a T), with T = `step`.
+    equal second filter follows, and its output is subtracted from its input. `share` is a T / (2 + a T), with T = `step`. The computation
+    is accurate in single precision even if a T is small.
     """
 
     actuators: tuple[str, ...]

@@ -17,7 +17,7 @@ _MADE, _SECONDS = "made.so", 300.0
 
 
 def find_compiler() -> tuple[str, ...] | None:
-    """Find the command of the C compiler: the environment variable CC (`ccache gcc`), else `cc`, `gcc` or `clang`; None if missing.
+    """Find the command of the C compiler: the environment variable CC if set, else `cc`, `gcc` or `clang`; None if not found.
 
     >>> found = find_compiler()
     >>> found is None or len(found) > 0
@@ -31,7 +31,7 @@ def find_compiler() -> tuple[str, ...] | None:
 
 
 def compile_source(what: str, sources: Mapping[str, str], flags: tuple[str, ...]) -> bytes:
-    """Compile `sources` (text by file name) to a shared library. An empty working folder prevents file paths in the library.
+    """Compile `sources` (text by file name) to a shared library. A temporary working folder keeps file paths out of the library.
 
     Raises `DesignError` without a compiler, or for sources that do not compile.
 

@@ -76,7 +76,8 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
 
     The stem of the file name is the prefix of all C names.
 
-    With `legs`, the code includes the force feedback in these legs. Raises `DesignError` for a name without `.c` or a reserved name.
+    With `legs`, the code includes the force feedback in these legs. Raises `DesignError` if the file name does not end in `.c`, or if it is
+    reserved.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -109,7 +110,7 @@ def hardware_files(
     """Generate a controller for hardware (see `hardware_code`). Returns the texts of source, header and test program, by file name.
 
     The test replays a simulation of the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad].
-    Raises `DesignError` for a name without `.c` or a reserved name.
+    Raises `DesignError` if the file name does not end in `.c`, or if it is reserved.
     """
     source = Path(path)
     require(hardware_findings(path))
@@ -120,7 +121,7 @@ def hardware_files(
 
 @check_arguments
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
-    """Write the controller of a loop as C99: `controller.c` and its header, both or none (see `controller_files`).
+    """Write the controller of a loop as C99 source and header (see `controller_files`); if one fails, neither file is written.
 
     Raises `DesignError` in the same cases as `controller_files`, and if a file cannot be written.
 
@@ -141,9 +142,9 @@ def write_controller(path: str | os.PathLike[str], given: Machine, about: str = 
 
 @check_arguments
 def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: bool = False) -> Path:
-    """Write a program as functional mock-up unit (FMI 2.0 for Co-Simulation); see `fmu`.
+    """Write a C program as a functional mock-up unit (FMI 2.0 for Co-Simulation); see `fmu`.
 
-    Raises `DesignError` if the file cannot be written, for a name without `.fmu`, and without a compiler.
+    Raises `DesignError` if the file cannot be written, if its name does not end in `.fmu`, and in the cases of `fmu`.
 
     >>> import tempfile
     >>> from flexstage.control.example import integral_loop
@@ -159,7 +160,9 @@ def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: b
 
 @check_arguments
 def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
-    """Write a plant as MATLAB file (see `plant_file`). Raises `DesignError` for a name without `.mat`, and if the file cannot be written.
+    """Write a plant as MATLAB file (see `plant_file`).
+
+    Raises `DesignError` if the file name does not end in `.mat`, or if the file cannot be written.
 
     >>> import tempfile
     >>> from flexstage.control.example import integral_loop

@@ -1,1 +1,1 @@
-"""Hysteresis and creep of piezo stacks: models, their inverse, their identification, and test plants of other models."""
+"""Hysteresis and creep of piezo stacks: models, their inverse and identification, and other models as test plants."""

@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 
 MAJOR = 0.8
-"""Branches of at least this fraction of the range belong to major loops."""
+"""Branches that span at least this fraction of the voltage range belong to major loops."""
 _LEAST = 0.1
 _BINS = 20
 _FEWEST = 40

@@ -104,7 +104,7 @@ class CreepFit:
 
 @check_arguments
 def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 2) -> CreepFit:
-    """Fit a sum of exponentials to a logarithmic law over a span of times [s], with `per_decade` terms per decade.
+    """Fit a sum of exponentials to logarithmic creep over a `span` of times [s], with `per_decade` terms per decade.
 
     The time constants tau_i are spaced evenly in log t, over the span and half a decade beyond both ends. The gains, all of one sign,
     follow from least squares at times that are also spaced evenly in log t. Raises `DesignError` for an empty span.

@@ -81,7 +81,7 @@ def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Findi
     places = _step(volts)
     first, last = (float(times[place]) for place in places)
     if places[1] - places[0] > 1 and last - first > _STILL * (times[-1] - times[0]):
-        what = f"the voltage changes from {first:g} s to {last:g} s, over more than {_STILL:.0%} of the record"
+        what = f"the voltage step lasts from {first:g} s to {last:g} s, more than {_STILL:.0%} of the record"
         yield Finding("volts", what, "Record one quick step, and keep the voltage constant after it")
     if np.any(np.diff(times) <= 0.0):
         yield Finding("times", "times must ascend", "Use the times of the samples")
@@ -89,7 +89,7 @@ def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Findi
 
 def _span_findings(after: Array, reference: float) -> Iterator[Finding]:
     if not reference > 0.0 or after[-1] < 10.0 * reference or np.sum(after >= reference) < _FEWEST:
-        what = f"too short after the step (got {after[-1]:g} s, {np.sum(after >= reference)} samples after {reference:g} s)"
+        what = f"ends too soon after the step (got {after[-1]:g} s, {np.sum(after >= reference)} samples after {reference:g} s)"
         yield Finding("record", what, f"Record at least {10.0 * reference:g} s after the step, or use an earlier reference time")
 
 

@@ -98,7 +98,9 @@ def play_outputs(inputs: Array, thresholds: Array) -> Array:
 
 
 def known_from(inputs: Array, thresholds: Array) -> int:
-    """Find the sample at which inputs have first spanned twice the largest threshold. From it on, no play depends on its initial state.
+    """Find the first sample at which the inputs have spanned twice the largest threshold.
+
+    From this sample on, no play depends on its initial state.
 
     >>> known_from(np.array([0.0, 1.0, 5.0, 3.0, 0.0]), np.array([0.0, 2.0]))
     2

@@ -31,14 +31,15 @@ _COVERED = 0.9
 def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = None) -> IdentifiedHysteresis:
     """Identify the hysteresis of a stack from `volts` (k,) [V] and `strokes` (k,) [m], in recorded order.
 
-    Thresholds are evenly spaced from 0 to below 0.4 of the voltage range. They extend to below 0.5 (longer memory) only if this reduces the
-    error by a fifth. The envelope before the plays has pieces of equal width. A least-squares fit (`fit_form`) gives weights of 0 or more
-    and slopes above 0, so that an inverse exists. Cross-validation selects the numbers of plays and pieces: the smallest model whose error
-    is at most 1.05 times the smallest error found. Samples at which plays still depend on their initial state are used only as history. The
-    model is rate independent: the record must be slow compared with the stage's first mode, and fast compared with creep. `limits` are the
-    actuator's voltage limits: a record with a smaller voltage range causes a warning.
+    Thresholds are evenly spaced from 0 to below 0.4 of the voltage range. The thresholds extend to below 0.5 of the range only if this
+    reduces the error by a fifth. The envelope before the plays has pieces of equal width. A least-squares fit (`fit_form`) gives weights of
+    0 or more and slopes above 0, so that an inverse exists. Cross-validation selects the numbers of plays and pieces: the smallest model
+    whose error is at most 1.05 times the smallest error found. Samples at which plays still depend on their initial state are not fitted.
+    The model is rate independent: the record must be slow compared with the stage's first mode, and fast compared with creep. `limits` are
+    the actuator's voltage limits: a record with a smaller voltage range causes a warning.
 
-    Raises `DesignError` for a record without valid hysteresis (see `record_findings`), drift beyond 2 %, and errors beyond 10 %.
+    Raises `DesignError` for a record without valid hysteresis (see `record_findings`), and for a drift above 2 % or an rms error above 10 %
+    of the stroke.
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
     >>> legs = [np.linspace(a, b, 60) for a, b in ((0, 1e3), (1e3, 0), (0, 1e3), (1e3, 200), (200, 800), (800, 0), (0, 600), (600, 0))]

@@ -106,7 +106,7 @@ def stack_hysteresis(
     rms: float | None = None,
     source: str = "",
 ) -> StackHysteresis:
-    """Convert a one-axis model to the contents of a file. Raises `DesignError` for several axes: a file describes one stack.
+    """Convert the hysteresis model of one stack to the contents of a file. Raises `DesignError` for a model with several axes (stacks).
 
     >>> stack_hysteresis(PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8])).weights
     (1e-07, 2e-08)
@@ -191,7 +191,7 @@ def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Pat
 
 @check_arguments
 def load_hysteresis(path: str | os.PathLike[str]) -> StackHysteresis:
-    """Read a hysteresis file. Raises `DesignError` with all errors of the file, each finding with file, line and key.
+    """Read a hysteresis file. Raises `DesignError` with all errors of the file; each error names file, line and key.
 
     >>> load_hysteresis("nowhere.toml")
     Traceback (most recent call last):

@@ -44,7 +44,7 @@ class StackTest(InNotebook):
         "hysteresis.range hysteresis.stroke hysteresis.width hysteresis.branches hysteresis.inner hysteresis.rms hysteresis.largest "
         "hysteresis.validation inverse_rms hysteresis.drift creep.law.rate",
         notes=(
-            "Errors and drift are relative to the stroke, the width to that of the major loop, the inverse's error to the voltage range.",
+            "Errors and drift are divided by the stroke, the width by the major loop's stroke, the inverse's error by the voltage range.",
             "The loop width is the largest distance between the branches. Validation is the error on sections left out of the fit.",
         ),
     )

@@ -25,13 +25,13 @@ _REPEATS = 4
 """Runs with the learned input, which separate repeating from non-repeating errors."""
 
 
-IN_BAND = "All errors are rms values, measured by the gauges. The last column is the error beyond the band, which is not learned."
+IN_BAND = "All errors are rms values, measured by the gauges. The last column is the error above the band, where nothing is learned."
 BEYOND = Heading("beyond the band", digits=3)
 
 
 @dataclass(frozen=True, eq=False)
 class RobustBand:
-    """Robust learning `band` with low-pass filter Q (see `robust_band`). `contraction` is the largest ||Q (I - gain P P_m^-1)||."""
+    """Robust learning `band` with low-pass filter Q; `contraction` is the largest ||Q (I - gain P P_m^-1)|| (symbols: `robust_band`)."""
 
     band: Band
     contraction: float
@@ -41,10 +41,10 @@ class RobustBand:
 class LearningResult:
     """Result of iterative learning in passes along the same path, for the loop's `coordinates` in their `units`.
 
-    `rms` (passes, f) is the rms of the measured error over the window, limited to frequencies up to `band` [Hz]. The first pass is without
-    learning. The last row of `rms` is the rms over four runs with the learned input; `noise` (f,) is the non-repeating component of the
-    errors of these runs. `beyond` (f,) is the rms error at frequencies above the band, where learning fades out. `contraction` is the
-    largest contraction factor per pass for relative mode shifts up to `spread`; `gain` is the learning gain.
+    `rms` (passes, f) is the rms of the measured error in the window of `LearningSettings`, limited to frequencies up to `band` [Hz]. The
+    first pass is without learning. The last row of `rms` is the rms over four runs with the learned input; `noise` (f,) is the
+    non-repeating component of the errors of these runs. `beyond` (f,) is the rms error at frequencies above the band, where learning fades
+    out. `contraction` is the largest contraction factor per pass for relative mode shifts up to `spread`; `gain` is the learning gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -54,7 +54,7 @@ class LearningResult:
         notes=(
             (
                 "{self.rms.shape[0]} passes, the first without learning, with gain {self.gain:g} in the band up to {self.band:.4g} Hz. "
-                "Each pass multiplies the repeating error by at most {self.contraction:.3g}, for mode shifts up to {self.spread:g}."
+                "Each pass multiplies the repeating error by at most {self.contraction:.3g} for relative mode shifts up to {self.spread:g}."
             ),
             IN_BAND,
         ),
@@ -90,9 +90,10 @@ class LearningResult:
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
     """Find the frequency band in which ||I - gain P P_m^-1|| is at most 0.8, for relative mode shifts up to `spread`.
 
-    P are the loop's responses with shifted modes, P_m those without shift. The norm is the largest singular value, with rotations scaled to
-    lengths. If it is below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson, International Journal of
-    Control 75 (2002) 1114). The band also ends where ||P_m^-1|| first exceeds 100. Raises `DesignError` if these limits leave no band.
+    P are the loop's responses with shifted modes, and P_m are its responses without shift. The norm is the largest singular value, with
+    rotations scaled to lengths. If the norm is below 1 at all frequencies, the error decreases from pass to pass (Norrloef & Gunnarsson,
+    International Journal of Control 75 (2002) 1114). The band also ends where ||P_m^-1|| first exceeds 100. Raises `DesignError` if these
+    limits leave no band.
     """
     plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)

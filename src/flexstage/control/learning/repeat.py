@@ -35,7 +35,7 @@ class Repeater:
     L over all frequencies, with rotations scaled to lengths; G are the loop's responses with shifted modes. With a contraction below 1 the
     loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, Journal of Dynamic
     Systems, Measurement, and Control 111 (1989) 353). `amplifies` is the largest amplification of errors between the harmonics, without
-    mode shift: the largest singular value of (I - q W) (I - q (W - G L))^-1 over all frequencies and all q with |q| = 1.
+    mode shift: the largest singular value of (I - q W) (I - q (W - G L))^-1 over all frequencies and all complex numbers q with |q| = 1.
     """
 
     period: float
@@ -133,9 +133,9 @@ class RepetitiveResult:
         notes=(
             (
                 "{self.rms.shape[0]} periods of {self.period:.4g} s, with gain {self.gain:g} in the band up to {self.band:.4g} Hz. Each "
-                "period multiplies the repeating error by at most {self.contraction:.3g}, for mode shifts up to {self.spread:g}."
+                "period multiplies the repeating error by at most {self.contraction:.3g} for relative mode shifts up to {self.spread:g}."
             ),
-            "Errors at frequencies between the harmonics of {self.period:.4g} s are amplified by at most {self.amplifies:.3g}.",
+            "Errors at frequencies between the harmonics of the period {self.period:.4g} s are amplified by at most {self.amplifies:.3g}.",
             IN_BAND,
         ),
     )

@@ -44,7 +44,7 @@ class Band:
     end: float
 
     def gains(self, frequencies: Array) -> Array:
-        """Compute the filter's gains Q (f,) at some frequencies."""
+        """Compute the filter's gains Q (f,) at `frequencies` (f,) [Hz]."""
         share = np.clip((np.asarray(frequencies) / self.end - _TAPER) / (1.0 - _TAPER), 0.0, 1.0)
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
@@ -74,10 +74,10 @@ def frequencies_of(path: Array, step: float) -> Array:
 def through(responses: Array, path: Array) -> Array:
     """Filter a path (n, k) by frequency responses (n/2+1, k, k), see `frequencies_of`. The path starts at zero and ends at rest.
 
-    The differences between successive points are transformed, because they end at zero. The response of an inverse model may have poles
-    outside the unit circle. In this case, it is the sum of a stable component forward in time and an antistable component backward in time
-    (Devasia, Chen & Paden, IEEE Transactions on Automatic Control 41 (1996) 930). Therefore the filtered path starts before the original
-    path.
+    The differences between successive points are transformed, because they end at zero. An inverse model may have poles outside the unit
+    circle. The model's response is then the sum of a stable component that runs forward in time and an antistable component that runs
+    backward in time (Devasia, Chen & Paden, IEEE Transactions on Automatic Control 41 (1996) 930). Therefore the filtered path starts
+    before the original path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

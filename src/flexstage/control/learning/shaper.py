@@ -18,7 +18,9 @@ class Shaper:
     amplitudes: Array
 
     def shape(self, poses: Array, step: float) -> Array:
-        """Shape a path (n, f) that is at rest before its start, with samples every `step` [s]. An impulse between two samples is split.
+        """Shape a path (n, f) that is at rest before its start, with samples every `step` [s].
+
+        An impulse between two samples acts partly at each of the two samples.
 
         >>> half = Shaper(np.array([0.0, 0.2]), np.array([0.5, 0.5]))
         >>> half.shape(np.ones((4, 1)), 0.1).ravel().tolist()

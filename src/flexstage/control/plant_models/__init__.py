@@ -1,1 +1,1 @@
-"""Plants of a loop: modes retained, electronics, coordinates."""
+"""Plants of a loop: retained modes, electronics, coordinates."""

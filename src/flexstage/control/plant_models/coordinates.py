@@ -26,12 +26,12 @@ _MISSING = 1e-9
 class Coordinates:
     """The f coordinates of a loop: ideal motions xi of a stage (x ... rz, or a subset).
 
-    `pose` (f, g) maps gauge readings to xi: it is the pseudo-inverse (R_s V)^+, where R_s contains the readings per platform motion, and V
-    the platform motions per xi. For six coordinates and six gauges, `pose` is R_s^-1 (equation 14 of Shin & Moon); for more gauges, it is a
+    `pose` (f, g) maps gauge readings to xi: it is the pseudo-inverse (R_s V)^+. V maps xi to platform motions, and R_s maps platform
+    motions to readings. For six coordinates and six gauges, `pose` is R_s^-1 (equation 14 of Shin & Moon); for more gauges, it is a
     least-squares solution. `gauges` are the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes: R_a
-    (equation 13 of Shin & Moon). `back` (f, n) is the inverse of `strokes`, or its least-squares inverse. For force actuators, `back` is
-    the static motion per unit input; its pseudo-inverse `strokes` gives the inputs [A, N] of minimum norm. `units` are m or rad; `length`
-    [m] makes rotations comparable with translations. `gauge_units` and `input_units` are units of readings and inputs (default: m).
+    (equation 13 of Shin & Moon). `back` (f, n) is the inverse or the pseudo-inverse of `strokes`. For force actuators, `back` is the static
+    motion per unit input; its pseudo-inverse `strokes` gives the inputs [A, N] of minimum norm. `units` are m or rad; `length` [m] makes
+    rotations comparable with translations. `gauge_units` and `input_units` are units of readings and inputs (default: m).
     """
 
     names: tuple[str, ...]
@@ -81,7 +81,7 @@ class Coordinates:
 
 
 def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coordinates:
-    """Compute the coordinates of a stage's loop (one design). For force actuators the elastic `model` provides the static motion.
+    """Compute the coordinates of the loop of a single stage. For force actuators, the elastic `model` provides the static motion.
 
     The inputs of force actuators follow from the pseudo-inverse of the static motion per unit input. Each loop's plant then has a static
     gain of 1, as for a stroke-driven stage. Raises `DesignError`, with the missing directions, if the gauges cannot observe the pose or the

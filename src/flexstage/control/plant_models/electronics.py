@@ -39,10 +39,11 @@ class ChargeHold(CheckedFields):
 class AmplifierSettings(amplifier.Amplifier):
     """Amplifier data that the design file does not contain; absent values impose no limit.
 
-    `slew` [V/s] is the maximum voltage rate. `noise_density` [V/Hz^(1/2)] is one-sided and white before the amplifier's lag. `bits` is the
-    resolution of the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current` and `bits`
-    apply, and its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands, range,
-    slew, noise and steps of an amplifier with `charge` are in volts that give the same charge to an unloaded stack.
+    `slew` [V/s] is the maximum voltage rate. `noise_density` [V/Hz^(1/2)] is the one-sided density of white noise at the input of the
+    amplifier's lag. `bits` is the resolution of the converter before the amplifier. An amplifier of voice coils controls the current:
+    `bandwidth`, `current` and `bits` apply, and its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge
+    of its stack. Its commands, range, slew, noise and steps are in volts: each charge is given as the voltage that it causes at an unloaded
+    stack.
     """
 
     slew: float | None = None
@@ -54,11 +55,12 @@ class AmplifierSettings(amplifier.Amplifier):
 
 @dataclass(frozen=True)
 class GaugeSettings(CheckedFields):
-    """Gauge data that replace or extend the design file; an absent value keeps the gauge's value in the design, or imposes no limit.
+    """Gauge data that replace or extend the data in the design file.
 
-    `bandwidth` [Hz] is the corner of the first-order lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before the lag.
-    `resolution` [m, rad] is the step of the reading. `filter_order` and `filter_corner` [Hz] belong to a Butterworth filter before the
-    sampler (order 0: no filter).
+    The design's value replaces an absent value. If the design has no value either, the gauge is ideal in this respect. `bandwidth` [Hz] is
+    the corner of the first-order lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is the one-sided density of white noise at the input of
+    the lag. `resolution` [m, rad] is the step of the reading. `filter_order` and `filter_corner` [Hz] belong to a Butterworth filter before
+    the sampler (order 0: no filter).
     """
 
     bandwidth: Annotated[float, UNLIMITED] | None = None
@@ -70,7 +72,10 @@ class GaugeSettings(CheckedFields):
 
 @dataclass(frozen=True)
 class ChargeDrive:
-    """Charge drive of a stack with `coupling` k above a `corner` [Hz]; the fraction `residual_hysteresis` of the hysteresis remains."""
+    """Charge drive of a stack, effective above the frequency `corner` [Hz].
+
+    `coupling` is the stack's coupling factor k. `residual_hysteresis` is the fraction of the hysteresis that remains.
+    """
 
     coupling: float
     corner: Annotated[float, FREQUENCY]
@@ -90,12 +95,12 @@ class ChargeDrive:
 
 @dataclass(frozen=True)
 class Amplifier:
-    """Amplifier, converter and stack of one actuator. Values are free strokes from the bias; for a force actuator, inputs [A or N].
+    """Amplifier, converter and stack of one actuator. All values refer to the free stroke [m], or to the input [A, N] of a force actuator.
 
-    `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate: the lesser of current x gain / capacitance and voltage rate x
-    gain, where gain is the free stroke per volt. `bandwidth` [Hz] is the corner of the lag after the hold. `noise_density` [m/Hz^(1/2)] is
-    the noise of the free stroke before the lag (None: not specified). `step` [m] is the converter's resolution (0: no rounding). Infinite
-    values impose no limit. `charge` is the charge drive, if any, with its corner.
+    `low` to `high` [m] is the stroke range, measured from the bias. `slew` [m/s] is the maximum rate: the lesser of current x gain /
+    capacitance and voltage rate x gain, where gain is the free stroke per volt. `bandwidth` [Hz] is the corner of the lag after the hold.
+    `noise_density` [m/Hz^(1/2)] is the noise of the free stroke before the lag (None: not specified). `step` [m] is the converter's
+    resolution (0: no rounding). Infinite values impose no limit. `charge` is the charge drive, if any.
     """
 
     low: float = -np.inf
@@ -159,10 +164,11 @@ def sampling_chain(
     amplifiers: AmplifierSettings | Mapping[str, AmplifierSettings] | None = None,
     gauges: GaugeSettings | Mapping[str, GaugeSettings] | None = None,
 ) -> Hardware:
-    """Describe the sampling chain of a stage from the data of its stacks and gauges, and from common settings or settings by name.
+    """Describe the sampling chain of a stage from the data of its stacks and gauges, and from settings of amplifiers and gauges.
 
-    Raises `DesignError` for unknown names, and for settings without the required stack data: the capacitance for `resistance`, `current`
-    and `leakage`, or the voltage range for `current`, `slew` and `noise_density`.
+    `amplifiers` contains common settings of all amplifiers, or settings by name of the actuator. `gauges` contains common settings of all
+    gauges, or settings by name of the gauge. Raises `DesignError` for unknown names, and for settings without the required stack data: the
+    capacitance for `resistance`, `current` and `leakage`, or the voltage range for `current`, `slew` and `noise_density`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> given = sampling_chain(double_triangle(), rate=10e3, delay=50e-6, amplifiers=AmplifierSettings(resistance=100.0, bits=16))
@@ -247,7 +253,7 @@ def _largest_input(setting: AmplifierSettings, part: ThrustActuator) -> float:
 
 def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator) -> Iterator[Finding]:
     if setting.charge is not None:
-        yield Finding(name, "a charge drive needs a stack, but this amplifier drives a force actuator", "Omit the key kind")
+        yield Finding(name, "a charge drive needs a stack, but this amplifier drives a force actuator", 'Omit the key "kind"')
     for key in ("resistance", "slew", "noise_density"):
         if getattr(setting, key) is not None:
             what = f"{key} applies to amplifiers of stacks, but this amplifier drives a force actuator"
@@ -256,7 +262,7 @@ def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator
     for key in ("current", "current_noise"):
         if getattr(setting, key) is not None and part.input is not CURRENT:
             yield Finding(
-                name, f"{key} does not apply to an input in {part.input.noun}", f"Omit {key}, or describe the actuator as a voice coil"
+                name, f"{key} does not apply if the input is {part.input.noun}", f"Omit {key}, or describe the actuator as a voice coil"
             )
     if setting.bits is not None and np.isinf(_largest_input(setting, part)):
         yield Finding(
@@ -328,7 +334,7 @@ def _item_findings(name: str, item: Amplifier | Sensor, rate: float | None) -> I
         yield Finding(name, f"noise density must be 0 or more (got {item.noise_density:g})", "Correct the noise density")
     if isinstance(item, Amplifier):
         if not item.low < item.high:
-            yield Finding(name, f"no stroke range (got {item.low:g} m to {item.high:g} m)", "Use a lower limit below the upper limit")
+            yield Finding(name, f"not a stroke range (got {item.low:g} m to {item.high:g} m)", "Use a lower limit below the upper limit")
         return
     if not 0.0 <= item.resolution < np.inf:
         yield Finding(name, f"resolution must be 0 or more (got {item.resolution:g})", "Use 0 for no rounding")

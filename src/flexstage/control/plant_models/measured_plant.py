@@ -92,9 +92,10 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
 
 
 def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
-    """Pair model and identified modes that have a modal assurance (MAC) above 0.7 at the gauges, and frequencies within a factor of e^0.5.
+    """Pair model modes with identified modes, if their modal assurance (MAC) at the gauges exceeds 0.7.
 
-    Close modes mix; an identified shape is therefore compared with the span of a model mode and all others within 5 % of its frequency.
+    The two frequencies of a pair differ by less than a factor of e^0.5. Modes with close frequencies mix. An identified shape is therefore
+    compared with the space spanned by the model mode and all model modes within 5 % of its frequency.
     """
     kept = _kept(given)
     rows = [channel.name for channel in model.outputs]
@@ -130,10 +131,10 @@ def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[F
     ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
     theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
     if not count:
-        what = f"all its modes ({theirs} Hz) are above the stage's lowest modes ({ours} Hz): probably another stage, or a record too short"
+        what = f"all identified modes ({theirs} Hz) are above the stage's first modes ({ours} Hz): probably another stage or a short record"
         yield Finding("--record", what, "Record longer or in a lower band, or use the design of the tested stage")
     elif alike < _LEAST * count or not len(pairs.found):
-        what = f"only {alike} of its {count} lowest modes ({theirs} Hz) match the stage ({ours} Hz): probably another stage"
+        what = f"only {alike} of the {count} lowest identified modes ({theirs} Hz) match the stage ({ours} Hz): probably another stage"
         yield Finding("--record", what, "Use the design of the tested stage; check for exchanged channels with flexstage identify --stage")
 
 

@@ -27,9 +27,9 @@ from flexstage.models.linear.state_space import state_space
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 SENSED = "sensed"
-"""Name prefix of inputs for sensor noise of inner loops."""
+"""Name prefix of the inputs that add noise to the sensors of inner loops."""
 ADDED = "added"
-"""Name prefix of outputs that inner loops add to the strokes before the amplifiers."""
+"""Name prefix of the outputs that are the strokes of inner loops, added before the amplifiers."""
 _REPEATED = 1e-3
 
 
@@ -78,13 +78,13 @@ def plant(
     damping: Damping | None = None,
     links: tuple[str, ...] = (),
 ) -> Plant:
-    """Build the plant of a stage's model; `kinematics` defines its loop's coordinates.
+    """Build the plant of a control loop from the model of a stage; `kinematics` defines the coordinates of the loop.
 
-    `modes` is the number of modes to retain. By default, all modes below half the sampling rate are retained; for a continuous loop, all
-    modes. At least as many modes as loop coordinates are retained, and modes of a pair (frequencies within 0.1 %) are retained together.
-    The static compliance of omitted modes is kept. `points` are further bodies or points for motion outputs, `links` the links for axial
-    force outputs `<link>.fx` [N]. Raises `DesignError` for a batch of designs, a design without damping, gauges that cannot observe the
-    pose, and actuators that cannot produce it.
+    `modes` is the number of modes to retain. By default, a sampled plant retains all modes below half the sampling rate, and a continuous
+    plant retains all modes. At least as many modes as loop coordinates are retained, and modes of a pair (frequencies within 0.1 %) are
+    retained together. The static compliance of omitted modes is kept. The motions of `points` (further bodies or points) become outputs.
+    The axial forces `<link>.fx` [N] of `links` become outputs. Raises `DesignError` for a batch of designs, a design without damping,
+    gauges that cannot observe the pose, and actuators that cannot produce the pose.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram

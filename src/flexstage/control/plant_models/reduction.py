@@ -43,7 +43,7 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 
 
 def resonances(given: Plant) -> Array:
-    """Compute the peak (k,) of every mode at resonance in the response from strokes to pose, whose static gain is 1.
+    """Compute the resonance peak (k,) of every mode in the response from strokes to pose; the static gain of this response is 1.
 
     With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2), with the modal output c, the
     modal input b, the damping ratio zeta and the angular frequency omega. The peak of a mode at 0 Hz is infinite.
@@ -79,7 +79,7 @@ def _kept_modes(given: Plant, wanted: Array) -> Array:
 
 
 def mode_names(given: Plant) -> list[str]:
-    """List the names of the modes' displacements among the states, in order."""
+    """List the names of the states that are modal displacements, in order."""
     return [name for name in given.states if name.startswith("mode") and not name.endswith("'")]
 
 

@@ -22,11 +22,11 @@ from flexstage.control.systems.system import select
 from flexstage.spatial.frame import COMPONENTS
 
 LOOP_GAINS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0)
-"""Loop gains from which modes are retained: the first; if no mode reaches it, the first one that keeps the margins."""
+"""Thresholds of loop gain for retention: the first value, or, if no mode reaches it, the highest value that preserves the margins."""
 MARGIN_CHANGE = 0.01
-"""Limit of the relative change of margins by all omitted modes together."""
+"""Largest permitted relative change of the margins due to all omitted modes together."""
 RINGING = 0.001
-"""Limit of ringing by an omitted mode, relative to the step, along any axis: 1/20 of the settling band of 2 %."""
+"""Ringing along any axis, relative to the step, above which a mode is not omitted: 1/20 of the settling band of 2 %."""
 _LEAST = 0.01
 """Gain margins are compared as 1/k, for factors up to 100; beyond, no loop is near its stability limit."""
 _PLAIN = 400
@@ -38,8 +38,8 @@ class Retention:
     """Modes retained in the plant, `retained` of `total`; the static compliance of the other modes is kept.
 
     `gain` is the largest loop gain of an omitted mode at its resonance (`frequency` [Hz]), with all loops closed. `change` is the largest
-    relative change that all omitted modes cause in the peak of the sensitivity S, the margins and the rejection. `wanted` (k,) marks the
-    modes to retain. `retune` is true if some modes must be added because of loop gain or margins, not only because of ringing after a step.
+    relative change of peak sensitivity, margins and rejection that the omitted modes cause together. `wanted` (k,) marks the modes to
+    retain. `retune` is true if some modes must be added because of loop gain or margins, not only because of ringing after a step.
     """
 
     retained: int

@@ -94,8 +94,8 @@ def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> Disk
     value for a complex factor in every loop. An upper bound of mu is the minimum over diagonal matrices D of sigma(D M D^-1), the largest
     singular value. A lower bound is the maximum over diagonal matrices U of phase factors of rho(U M), the spectral radius. The upper bound
     is proved for all frequencies: with a fixed D, a Hamiltonian matrix gives the intervals in which sigma is below a level. This level is
-    0.1 % above the highest value found. Further matrices D are computed until such intervals cover all frequencies. Raises `DesignError`
-    for an unstable loop.
+    0.1 % above the highest value of sigma found. Further matrices D are computed until the intervals cover all frequencies. Raises
+    `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()

@@ -35,8 +35,8 @@ _LEAST_LINES = 16
 class Reading:
     """Measured margin: its `value`, and 95 % confidence limits `low` and `high` (None: unknown).
 
-    `fitted` is the margin of the identified plant, `predicted` the margin of the stage's model, at the same frequency lines (NaN: no
-    limit).
+    `fitted` is the margin of the identified plant, and `predicted` is the margin of the stage's model. Both use the frequency lines of the
+    measurement. NaN means that the margin has no limit.
     """
 
     value: Annotated[float, Heading("measured", digits=4)]
@@ -60,7 +60,7 @@ class ReadChannel:
 class ReadLines:
     """Sensitivities |S_ii| (f, n) of n loops at f `frequencies` [Hz]: `measured`, with 95 % limits `low` and `high`, `fitted`, `predicted`.
 
-    The `fitted` values are those of the identified plant, the `predicted` values those of the stage's model. `low` and `high` are absent if
+    The `fitted` values belong to the identified plant, the `predicted` values belong to the stage's model. `low` and `high` are absent if
     the uncertainty of the test's responses is unknown.
     """
 
@@ -99,7 +99,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     H_0 is the response of the hold, and K that of the controller; T is the sampling time, and w = 2 pi f. P is estimated from records with
     local polynomials (`local_responses`), or is the analyser's response. The errors of P are assumed to have a circular complex normal
     distribution. For an analyser's response, their variance is |P|^2 (1 - g^2)/(n g^2), with the coherence g^2 and n averages (Bendat &
-    Piersol, Random Data, 4th ed., 2010, chapter 9). This assumes that one input was driven at a time. Confidence limits are quantiles of
+    Piersol, Random Data, 4th ed., 2010, chapter 9). The formula assumes one driven input at a time. Confidence limits are quantiles of
     100 random draws; they are widened if the draws are biased. Aliasing of signals above half the sampling rate is neglected.
 
     Only frequency lines within the band of the identification and below half the sampling rate are used.
@@ -148,7 +148,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
 
 
 def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterator[Finding]:
-    """Check the coherence of the gauges from 2/3 to 3/2 of the crossover frequencies; one finding for each gauge with low coherence."""
+    """Return a finding for each gauge with low coherence between 2/3 of the lowest and 3/2 of the highest crossover frequency."""
     if seen.multiple is None or seen.spectra is None:
         return
     ends = [each.rejection.fitted for each in margins.channels if np.isfinite(each.rejection.fitted)]

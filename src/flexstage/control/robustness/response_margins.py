@@ -1,4 +1,4 @@
-"""Margins from frequency responses of a plant at lines, measured or modelled."""
+"""Margins from measured or modelled frequency responses of a plant at frequency lines."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class ResponseMargins:
 
     `peak` is the largest singular value of the sensitivity S, with rotations multiplied by the stage's length. Stability limits of each
     loop are the nearest gain factors below 1 (`lows`) and above 1 (`gains`), the `phases` [rad] and the `delays` [s]. `rejections` [Hz] are
-    the first crossings of |S_ii| = 1 (NaN: none).
+    the first upward crossings of |S_ii| = 1 (NaN: no crossing).
     """
 
     sizes: Array

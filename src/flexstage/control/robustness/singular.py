@@ -45,9 +45,10 @@ def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
     """Minimise the largest singular value of e^{d_i} M_ij e^{-d_j} over d.
 
     Any d gives an upper bound of the structured singular value mu. The logarithm of the largest singular value is convex in d. At the
-    minimum, several singular values may coincide; therefore the smooth norms (sum over k of sigma_k^2p)^(1/2p) are minimised instead, with
-    increasing p. The derivative of the logarithm of a norm with respect to d_i is the sum over k of w_k (|u_ik|^2 - |v_ik|^2). Here u_k and
-    v_k are the left and right singular vectors of the scaled matrix; the weights w_k are proportional to sigma_k^2p.
+    minimum, several singular values sigma_k may coincide. Therefore the smooth norms (sum over k of sigma_k^(2p))^(1/(2p)) are minimised
+    instead, with increasing p. The derivative of the logarithm of a norm with respect to d_i is the sum over k of w_k (|u_ik|^2 -
+    |v_ik|^2). Here u_k and v_k are the left and right singular vectors of the scaled matrix; the weights w_k are proportional to
+    sigma_k^(2p).
 
     >>> round(upper_bound(np.array([[0.0, 100.0], [1.0, 0.0]]), np.zeros(2))[0], 6)  # mu is the geometric mean of the two
     10.0
@@ -73,7 +74,7 @@ def lower_bound(matrix: Array) -> tuple[float, Array]:
     """Maximise the spectral radius of e^{j theta_i} M_ij over theta.
 
     Any theta gives a lower bound of the structured singular value mu. The BFGS method with several start values uses the derivatives d
-    log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x), where lambda is the eigenvalue of largest magnitude, x its right and y its left
+    log|lambda| / d theta_i = -Im(conj(y_i) x_i / (y^H x)), where lambda is the eigenvalue of largest magnitude, x its right and y its left
     eigenvector.
 
     >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # equal to the largest singular value

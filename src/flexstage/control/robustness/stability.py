@@ -46,7 +46,7 @@ class Verdict(InNotebook):
     """Stability of a loop, which is stable if all closed-loop poles decay. Hold and delay are modelled exactly.
 
     `slowest_pole` is the least stable pole. `poles` (k,) are all poles as rates [1/s], least stable first; a pole z of a loop with the
-    sampling time T has the rate ln z / T. With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to
+    sampling time T has the rate (ln z)/T. With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to
     `gain_high`. For a stable loop, this interval contains 1 (0 and infinite: no limit within a factor of 1000). For an unstable loop, these
     limits belong to the nearest stable interval below 1 (NaN: no stable factor down to 1/1000). `sentence` summarises the verdict.
     """
@@ -63,9 +63,10 @@ class Verdict(InNotebook):
 def verdict(closed: Loop) -> Verdict:
     """Determine the stability of a loop from the eigenvalues of its closed system.
 
-    A mode's participation in a pole is the sum, over the mode's states, of the magnitudes of the products of left and right eigenvector
-    entries (Perez-Arriaga, Verghese, Schweppe 1982). Modes within 0.1 % of one another in frequency count as one source. At a gain limit,
-    the growth rate changes sign. From a stable gain factor, limits are searched upwards in steps of 8 % and downwards in steps of 40 %.
+    A pole has a left eigenvector l and a right eigenvector r. The participation of a mode in the pole is the sum of |l_k r_k| over the
+    states k of the mode (Perez-Arriaga, Verghese, Schweppe 1982). Modes with frequencies within 0.1 % of one another are treated as one
+    mode. At a gain limit, the growth rate changes sign. The search for gain limits starts at a stable gain factor. It increases the factor
+    in steps of 8 %, and decreases the factor in steps of 40 %.
 
     >>> from flexstage.control.example import integral_loop
     >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).slowest_pole.source
@@ -137,7 +138,7 @@ def _growth(open_loop: System, factor: float) -> float:
 
 
 def require_stable(closed: Loop, what: str) -> None:
-    """Raise `DesignError` if a loop is unstable; `what` names the quantities that do not exist then (margins, rms values).
+    """Raise `DesignError` if a loop is unstable; `what` names quantities that an unstable loop does not have (margins, rms values).
 
     The message contains growth rate and source of the least stable pole.
 
@@ -147,7 +148,7 @@ def require_stable(closed: Loop, what: str) -> None:
     if closed.system.growth < 0.0:
         return
     advice = "Reduce the gain, or filter or damp the source"
-    require([Finding("loop", f"{what} of an unstable loop: {_sentence(closed, _least(closed)[0])}", advice)])
+    require([Finding("loop", f"no {what} for an unstable loop: {_sentence(closed, _least(closed)[0])}", advice)])
 
 
 def _left(A: Array, pole: complex) -> Array:

@@ -79,12 +79,12 @@ class Margins(InNotebook):
 
 @check_arguments
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
-    """Compute margins of one loop at a time, with the other loops closed; `found` are the `curves` at the cut if already known.
+    """Compute margins of one loop at a time: this loop is opened at `cut`, and all other loops are closed.
 
-    Gain limits occur where the open loop L_i is real and negative: its sensitivity S_ii = 1/(1 + L_i) is then real, and below 0 or above 1.
-    Phase and delay limits occur where |L_i| = 1: the real part of S_ii is then 1/2. All limits are exact to rounding error. The disk margin
-    is alpha_i = 1/||S_ii - 1/2||; the norm is the largest magnitude over all frequencies (Seiler, Packard, Gahinet, IEEE Control Systems
-    40, 2020). Raises `DesignError` for an unstable loop.
+    `found` can contain the `curves` at `cut`, which are otherwise computed. Gain limits occur where the open loop L_i is real and negative:
+    its sensitivity S_ii = 1/(1 + L_i) is then real, and below 0 or above 1. Phase and delay limits occur where |L_i| = 1: the real part of
+    S_ii is then 1/2. All limits are exact to rounding error. The disk margin is alpha_i = 1/||S_ii - 1/2||; the norm is the largest
+    magnitude over all frequencies (Seiler, Packard, Gahinet, IEEE Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = margins(integral_loop(), LoopBreak.POSE).of("x")
@@ -160,7 +160,7 @@ def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
 
 @dataclass(frozen=True)
 class ShiftedPeak:
-    """Larger peak sensitivity Ms of two plants: with all modes shifted up and down by a relative `shift`; infinite if one is unstable."""
+    """Larger peak sensitivity Ms of two loops: all modes shifted up, or all down, by a relative `shift`; infinite if a loop is unstable."""
 
     TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted up or down", "peak", head="shift")
 
@@ -189,11 +189,11 @@ def _shifted_peak(closed: Loop, offset: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Bandwidths(InNotebook):
-    """Bandwidths [Hz] (n,) by coordinate: the lowest frequencies at which magnitudes cross a limit (NaN: none).
+    """Bandwidths [Hz] (n,) by coordinate: the lowest frequencies at which magnitudes cross a limit (NaN: no crossing).
 
     At `tracking`, the true motion falls 3 dB below its reference. At `complementary`, the complementary sensitivity |T_ii| falls 3 dB below
-    1. At `rejection`, the sensitivity |S_ii| rises through 1: above it, the loop amplifies disturbances. At `half_rejection`, |S_ii| rises
-    through -3 dB.
+    1. At `rejection`, the sensitivity |S_ii| rises through 1: above this frequency, the loop amplifies disturbances. At `half_rejection`,
+    |S_ii| rises through -3 dB.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -39,7 +39,10 @@ _UNLIMITED = 1e-3
 
 @dataclass
 class Generator:
-    """Wave generator: its `table` (0: none), `cycles` (0: endless), samples per point `rate`, `offset`, and position `at`."""
+    """Wave generator: number of its wave `table` (0: none), `cycles` (0: endless), samples per point `rate`, and `offset` [um, urad].
+
+    `at` is the next sample of the wave (None: the generator is stopped). If `is_straight`, values are interpolated between points.
+    """
 
     table: int = 0
     cycles: int = 0
@@ -109,7 +112,7 @@ class StageController:
     # --- commands ---
 
     def hold(self, axis: int, *, on: bool) -> None:
-        """Switch the servo of an axis off, or on with its present position as the target."""
+        """Switch the servo of an axis on or off; switching on sets the target to the present position."""
         if on and not self.held[axis]:
             self.target[axis] = self._wanted[axis] = self.position[axis]
         if not on:
@@ -220,7 +223,7 @@ class StageController:
         return np.asarray(course)
 
     def output_is_known(self, option: int) -> bool:
-        """Whether a recorder option has data: without voltage data of the stacks, voltages are unknown."""
+        """Whether data exist for a recorder option; voltages exist only if all stacks have voltage data."""
         return option != VOLTAGE or bool(np.all(np.isfinite(self.running.machine.amplifiers.gain)))
 
 

@@ -34,7 +34,7 @@ class Code(IntEnum):
 
 
 class CommandError(Exception):
-    """Command refused, with its code."""
+    """Refusal of a command, with an error `code`."""
 
     def __init__(self, code: Code) -> None:
         super().__init__(code.name)

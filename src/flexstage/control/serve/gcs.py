@@ -83,23 +83,23 @@ class Session:
         return self.stage.axes.index(word)
 
     def axes(self, words: Sequence[str]) -> list[int]:
-        """Return the indices of the named axes; without names, of all axes."""
+        """Return the indices of the named axes, or of all axes if `words` is empty."""
         return [self.axis(word) for word in words] if words else list(range(len(self.stage.axes)))
 
     def pairs(self, words: Sequence[str]) -> dict[int, float]:
-        """Read pairs of axis and number; each axis occurs once."""
+        """Read pairs of axis and number; a repeated axis is refused."""
         found = {self.axis(name): _number(value) for name, value in _groups(words, 2)}
         if 2 * len(found) != len(words):
             raise CommandError(Code.DOUBLE_AXIS)
         return found
 
     def places(self, words: Sequence[str], count: int) -> list[int]:
-        """Convert numbers from 1 to `count` to zero-based indices; without numbers, all indices."""
+        """Convert numbers from 1 to `count` to zero-based indices; return all indices if `words` is empty."""
         return [_place(word, count) for word in words] if words else list(range(count))
 
 
 def spelled(name: str) -> str:
-    """Return a command name as printed in manuals: for a single character, `#` and its code."""
+    """Return a command name as printed in manuals; a single character is written as `#` and its code."""
     return f"#{ord(name)}" if len(name) == 1 else name
 
 
@@ -488,46 +488,46 @@ COMMANDS: dict[str, Command] = {
     "MOV?": Command(_of_axes(lambda s, a: _shown(s.target[a])), "get target position"),
     "MVR": Command(_move_by, "set target relative to current target"),
     "ONT?": Command(_of_axes(lambda s, a: str(int(s.on_target[a]))), "get on-target state"),
-    "POS?": Command(_of_axes(lambda s, a: _shown(s.position[a])), "get real position"),
+    "POS?": Command(_of_axes(lambda s, a: _shown(s.position[a])), "get measured position"),
     "PUN?": Command(_of_axes(lambda s, a: s.units[a]), "get position unit"),
-    "RTR": Command(_set_record_rate, "set record table rate"),
-    "RTR?": Command(lambda s, _: [str(s.stage.recorder.rate)], "get record table rate"),
-    "SAI?": Command(_names, "get list of current axis identifiers"),
-    "SPA?": Command(_parameter, "get volatile memory parameters: the servo update time"),
-    "STE": Command(_step, "start step and response measurement"),
+    "RTR": Command(_set_record_rate, "set number of samples per recorded point"),
+    "RTR?": Command(lambda s, _: [str(s.stage.recorder.rate)], "get number of samples per recorded point"),
+    "SAI?": Command(_names, "get names of the axes"),
+    "SPA?": Command(_parameter, "get a parameter: only the servo update time is available"),
+    "STE": Command(_step, "move an axis by a step, and start the data recorder"),
     "STP": Command(_stop, "stop all axes"),
-    "SVO": Command(_set_axes(lambda s, axis, value: s.hold(axis, on=value == 1.0)), "set servo mode"),
-    "SVO?": Command(_of_axes(lambda s, a: str(int(s.held[a]))), "get servo mode"),
+    "SVO": Command(_set_axes(lambda s, axis, value: s.hold(axis, on=value == 1.0)), "switch the servo of an axis on (1) or off (0)"),
+    "SVO?": Command(_of_axes(lambda s, a: str(int(s.held[a]))), "get whether the servo of an axis is on"),
     "TMN?": Command(_of_axes(lambda s, a: _shown(s.low[a])), "get minimum commandable position"),
     "TMX?": Command(_of_axes(lambda s, a: _shown(s.high[a])), "get maximum commandable position"),
     "TNR?": Command(lambda _s, _: [str(recorder.TABLES)], "get number of record tables"),
     "TPC?": Command(lambda s, _: [str(len(s.stage.volts))], "get number of output channels"),
-    "TSC?": Command(lambda s, _: [str(len(s.stage.readings))], "get number of input signal channels"),
-    "TSP?": Command(_signals(lambda s: 1e6 * s.readings), "get input signal position value"),
+    "TSC?": Command(lambda s, _: [str(len(s.stage.readings))], "get number of gauges"),
+    "TSP?": Command(_signals(lambda s: 1e6 * s.readings), "get positions read by the gauges"),
     "TWG?": Command(lambda s, _: [str(len(s.stage.axes))], "get number of wave generators"),
-    "VCO": Command(_set_axes(lambda s, axis, value: s.is_ramped.__setitem__(axis, value == 1.0)), "set velocity control mode"),
-    "VCO?": Command(_of_axes(lambda s, a: str(int(s.is_ramped[a]))), "get velocity control mode"),
+    "VCO": Command(_set_axes(lambda s, axis, value: s.is_ramped.__setitem__(axis, value == 1.0)), "switch velocity limit on or off"),
+    "VCO?": Command(_of_axes(lambda s, a: str(int(s.is_ramped[a]))), "get whether the velocity limit of an axis is on"),
     "VEL": Command(_set_axes(lambda s, axis, value: s.velocity.__setitem__(axis, value), switches=False), "set closed-loop velocity"),
     "VEL?": Command(_of_axes(lambda s, a: _shown(s.velocity[a])), "get closed-loop velocity"),
     "VER?": Command(_plain(lambda _: [f"flexstage: {__version__}"]), "get versions"),
     "VOL?": Command(_signals(lambda s: s.volts), "get voltage of output channel"),
-    "WAV": Command(_wave, "set waveform definition"),
-    "WAV?": Command(_wave_lengths, "get waveform definition: lengths of wave tables"),
+    "WAV": Command(_wave, "define a waveform in a wave table"),
+    "WAV?": Command(_wave_lengths, "get lengths of wave tables"),
     "WCL": Command(_clear_waves, "clear wave table data"),
     "WGC": Command(_set_generators("cycles", lambda word: _integer(word, 0, 2**31)), "set number of wave generator cycles"),
     "WGC?": Command(_of_generators(lambda g: g.cycles), "get number of wave generator cycles"),
-    "WGO": Command(_generate, "set wave generator start/stop mode"),
-    "WGO?": Command(_of_generators(lambda g: int(g.at is not None)), "get wave generator start/stop mode"),
+    "WGO": Command(_generate, "start (1) or stop (0) a wave generator"),
+    "WGO?": Command(_of_generators(lambda g: int(g.at is not None)), "get whether a wave generator runs"),
     "WOS": Command(_set_generators("offset", _number, idle=True), "set wave generator output offset"),
     "WOS?": Command(_of_generators(lambda g: _shown(g.offset)), "get wave generator output offset"),
     "WSL": Command(
-        _set_generators("table", lambda word: _integer(word, 0, _TABLES), idle=True), "set connection of wave table to wave generator"
+        _set_generators("table", lambda word: _integer(word, 0, _TABLES), idle=True), "select the wave table of a wave generator"
     ),
-    "WSL?": Command(_of_generators(lambda g: g.table), "get connection of wave table"),
-    "WTR": Command(_set_wave_rate, "set wave generator table rate"),
+    "WSL?": Command(_of_generators(lambda g: g.table), "get the wave table of a wave generator"),
+    "WTR": Command(_set_wave_rate, "set number of samples per point of a wave table"),
     "WTR?": Command(
         _of_generators(lambda g: f"{g.rate} {int(g.is_straight)}"),
-        "get wave generator table rate",
+        "get number of samples per point of a wave table",
     ),
 }
 """All commands by mnemonic, or by character for single-character commands."""

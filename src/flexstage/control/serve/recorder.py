@@ -10,7 +10,7 @@ from flexstage.base.number import Array
 from flexstage.control.simulation.result import Series
 
 TABLES, POINTS = 8, 262_144
-"""Number of tables, and of points per table."""
+"""Number of tables, and total number of points in all tables."""
 NOTHING, TARGET, POSITION, ERROR, VOLTAGE = 0, 1, 2, 3, 16
 """Record options: the recorded quantity of a table."""
 
@@ -27,7 +27,7 @@ class Recorder:
     _skip: int = 0
 
     def start(self) -> None:
-        """Empty all tables, and fill them from the next sample."""
+        """Empty all tables, and start recording at the next sample."""
         self.points = [np.empty(0)] * TABLES
         self._left, self._skip = POINTS // TABLES, 0
 

@@ -1,4 +1,4 @@
-"""Virtual controller on a loopback socket: lines of its clients, and simulated time synchronised with the clock."""
+"""Virtual controller on a loopback socket: it answers clients, and synchronises simulated time with the clock."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ _HTTP = re.compile(rb"\s*(?:GET|HEAD|POST|PUT|PATCH|DELETE|CONNECT|OPTIONS|TRACE
 
 @dataclass
 class Pace:
-    """Lag of simulated time behind the clock [s]: clock time `offset` at zero simulated time, largest lag `most`, and time `lost`."""
+    """Lag [s] of simulated time behind the clock: `offset` is the clock time at zero simulated time, `most` is the largest lag.
+
+    `lost` is the total time that was not simulated.
+    """
 
     offset: float
     most: float = 0.0
@@ -63,7 +66,7 @@ class ServedStage:
     def __init__(self, stage: StageController, port: int = PORT, *, paced: bool = True) -> None:
         self.stage, self._port = stage, port
         self.pace = Pace(time.perf_counter() - stage.seconds) if paced else None
-        """None: as fast as possible."""
+        """Pace of the simulation; None if the simulation runs as fast as possible."""
         self._server: asyncio.Server | None = None
         self._running: asyncio.Task[None] | None = None
         self._clients: set[asyncio.Task[None]] = set()
@@ -79,7 +82,7 @@ class ServedStage:
             self._server = await asyncio.start_server(self._client, HOST, self._port, limit=_READ)
         except OSError as error:
             what = f"cannot listen: {os.strerror(error.errno) if error.errno else error}"
-            raise refuse(f"--port {self._port}", what, "Use another port, or 0 for a free one") from None
+            raise refuse(f"--port {self._port}", what, "Use another port, or 0 for any free port") from None
         self._port = self._server.sockets[0].getsockname()[1]
         self._running = asyncio.create_task(self._race() if self.pace is None else self._follow(self.pace))
 

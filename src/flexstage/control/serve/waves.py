@@ -10,7 +10,7 @@ from flexstage.base.number import Array
 from flexstage.control.serve.errors import Code, CommandError
 
 LARGEST = 262_144
-"""Total number of points in all wave tables."""
+"""Maximum total number of points in all wave tables."""
 
 
 def segment(kind: str, values: Sequence[float]) -> Array:

@@ -22,7 +22,7 @@ _SETTLED = 3.0
 
 
 def response_motions(found: LoopStudy, still: StageData) -> tuple[Motion, ...]:
-    """Convert the first simulations of a loop to stage motions: the platform follows its true pose, other bodies move ideally."""
+    """Convert up to 12 simulations to stage motions: the platform has its true pose, other bodies follow the ideal kinematics."""
     axes = {each.name: each.twists for each in still.motions if each.group is Group.AXIS}
     return tuple(motion for number, run in enumerate(found.runs[:_MOST], start=1) for motion in _played(number, run, axes))
 

@@ -57,9 +57,9 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     detuned = {kind_name(name): each.detuned for name, each in found.controllers.items()}
     lines = {name: each for name, each in detuned.items() if each is not None and len(each.gains)}
     caption = (
-        "Each dot is a tuned controller; its line shows the same controller with its output reduced by factors down to a tenth. Values are "
-        "the worst of all coordinates in the linear loop; the noise is the geometric mean, with rotations times the stage's length. A "
-        "filled dot is Pareto-optimal: no other controller is at least as good in all four quantities."
+        "Each dot is a tuned controller; its line shows the same controller with lower gain, down to a tenth. Values are those of the "
+        "worst coordinate in the linear loop. The noise is the geometric mean of all coordinates, with rotations multiplied by the "
+        "stage's length. A filled dot is Pareto-optimal: no other controller is at least as good in all four quantities."
     )
     drawn = Picture(
         to_svg(

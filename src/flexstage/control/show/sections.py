@@ -166,8 +166,8 @@ def frequency_section(found: LoopStudy) -> Section | None:
     circles = to_svg(nyquist_figure(seen, peak, margin_points(found)), "nyquist", "Nyquist plot of the open loops")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
     caption = (
-        "Bode plot of each loop opened at the pose, with the other loops closed. Dotted lines are modes of the stage. Circles are gain "
-        "margins (phase −180°), and phase and delay margins (gain 1). Every second curve is dashed."
+        "Bode plot of each loop, opened at the pose while the other loops are closed. Vertical dotted lines mark mode frequencies of the "
+        "stage. Circles mark gain margins (at phase −180°), and phase and delay margins (at gain 1). Every second curve is dashed."
     )
     return section(
         "Frequency domain",
@@ -176,16 +176,16 @@ def frequency_section(found: LoopStudy) -> Section | None:
             Picture(loops, caption, reading=reading(opened, spots)),
             Picture(
                 circles,
-                "Nyquist plot of the same loops near −1. Dotted: gain 1. Dashed: highest permitted peak of S. Circles: margins.",
+                "Nyquist plot of each open loop near −1. Dotted circle: gain 1. Dashed circle: limit of |S|. Small circles: margins.",
             ),
             Picture(
                 sensitivities,
-                "Sensitivity S (error per disturbance) and complementary sensitivity T = 1 − S. Dashed: highest permitted peak of S.",
+                "Sensitivity S (error per disturbance) and complementary sensitivity T = 1 − S. Dashed line: limit of |S|.",
                 reading=reading(pair),
             ),
             Picture(
                 poles,
-                "Closed-loop poles, with delay and hold, and poles of the stage in open loop. Dotted: damping ratios 0.1, 0.3 and 0.6.",
+                "Poles of the closed loop (with delay and hold) and of the stage in open loop. Dotted: damping ratios 0.1, 0.3 and 0.6.",
             ),
             fold("Static crosstalk", matrix_table("Static motion per reference", found.crosstalk)),
         ],
@@ -193,19 +193,19 @@ def frequency_section(found: LoopStudy) -> Section | None:
 
 
 def measured_section(found: LoopStudy) -> Section | None:
-    """Build the section of the loop with measured responses, compared with identified and design model; `None` without a test."""
+    """Build the section with loop results from measured responses, identified model and design model; `None` without a test."""
     if found.measured is None:
         return None
     seen = found.measured.sensitivities
     drawn = measured_figure(seen, found.plant.coordinates.names)
     picture = to_svg(drawn, "measured-loops", "Sensitivities from measured responses")
     sure = "shaded: 95 % interval" if seen.low is not None else "the test has no data on the uncertainty of its responses"
-    caption = f"Sensitivity of every loop along its axis, with hold and delay; {sure}."
+    caption = f"Sensitivity of each coordinate to its own disturbance, with hold and delay; {sure}."
     return section("Loop with measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:
-    """Return the positions of the single loops' margins in the open-loop figure."""
+    """Return the positions of the margins of all loops in the open-loop figure."""
     for each in () if found.margins is None else found.margins.channels:
         for edge in (each.gain_low, each.gain_high):
             if 0.0 < edge.value < np.inf and edge.frequency > 0.0:  # zero frequency is not drawn
@@ -220,7 +220,7 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
 
 
 def margin_points(found: LoopStudy) -> Array:
-    """Evaluate the open loops (m,) at the frequencies of their gain, phase and delay margins."""
+    """Evaluate each open loop at its gain, phase and delay margins; return all m complex values (m,)."""
     if found.margins is None or found.curves is None:
         return np.zeros(0, complex)
     edges = [
@@ -251,18 +251,18 @@ def time_section(found: LoopStudy) -> Section | None:
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
     if test.course.plane is not None:
         drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Plan view of the {test.course.name}")
-        yield Picture(drawn, f"Plan view of the {test.course.name}, to scale; the legend has the magnification of the error.")
+        yield Picture(drawn, f"Plan view of the {test.course.name}, to scale. The legend gives the magnification of the error.")
     drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
     yield Picture(drawn, "Reference minus true pose over time.")
     if test.learned is not None:
         taught = test.learned
         figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "number of learned passes", taught.noise)
-        caption = f"Error up to {number(taught.band, 4)} Hz, for each pass. Dotted: non-repeating component."
+        caption = f"Error up to {number(taught.band, 4)} Hz in each pass. Dotted: component that does not repeat from pass to pass."
         yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by pass"), caption)
     if test.repeated is not None:
         seen = test.repeated
         figure = lesson_figure(seen.rms, seen.coordinates, seen.units, "number of previous periods")
-        caption = f"Error up to {number(seen.band, 4)} Hz, for each period."
+        caption = f"Error up to {number(seen.band, 4)} Hz in each period."
         yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by period"), caption)
 
 

@@ -165,7 +165,7 @@ def margin_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:
-    """Tabulate margins from measured responses and from both models at the same frequencies; no tables without a test."""
+    """Tabulate margins from measured responses, the identified model and the design model; no tables without a test."""
     seen = found.measured
     if seen is None:
         return []
@@ -214,14 +214,17 @@ def error_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def static_error_tables(found: RestErrors) -> list[Table]:
-    """Tabulate static open-loop errors without and with correction of lost motion: rows are reached, columns are commanded coordinates."""
+    """Tabulate static errors in open loop, without and with correction of lost motion.
+
+    Rows are the reached coordinates, columns the commanded coordinates.
+    """
     errors = {"the ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
     if found.other_gains is not None:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains
     largest = ", ".join(f"{percent(each.largest, 3)} with {name}" for name, each in errors.items())
     notes = [
         "The error is the commanded minus the reached pose, for strokes from the ideal mapping R_a.",
-        f"The largest error, with rotations as lengths, is {largest}.",
+        f"The largest error, with rotations converted to lengths, is {largest}.",
     ]
     error, corrected = found.ideal_map.error, found.lost_motion_gains.error
     return [
@@ -257,9 +260,9 @@ def _noise_notes(found: LoopStudy) -> tuple[str, ...]:
     budget, still, resting = found.noise, found.still, found.resting
     notes = ["Values are the rms of the platform's true motion relative to the ground. The mean squares of all sources add up."]
     if resting is not None:
-        notes.append(f"The rms is from {resting.count} simulations of {number(resting.seconds, 3)} s, with quantisation and limits.")
+        notes.append(f"The rms is from {resting.count} simulations of {number(resting.seconds, 3)} s, with rounding and amplifier limits.")
     elif still is not None:
-        notes.append(f"Simulated values are from {number(float(still.times[-1]), 3)} s of simulation, with quantisation and limits.")
+        notes.append(f"Simulated values are from {number(float(still.times[-1]), 3)} s of simulation, with rounding and amplifier limits.")
     if Kind.FLOOR in budget.kinds:
         notes.append(f"Floor vibration is included from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz.")
     return (*notes, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes))
@@ -271,7 +274,7 @@ def comparison_tables(found: Comparison) -> list[Table | None]:
     best = "; ".join(f"{aim}: {kind_name(name)}" for aim, name in found.wins.items())
     slow = [name for name, each in named.items() if each.slowly_rounding]
     notes = [
-        *([f"Quantisation is counted as white noise, but is not white with {'; '.join(slow)}; see flexstage loop."] if slow else []),
+        *([f"Quantisation is counted as white noise, but it is not white with {'; '.join(slow)}; see flexstage loop."] if slow else []),
         f"Best in {best}. The best noise is the lowest geometric mean of all coordinates.",
         f"Pareto-optimal in crossover, noise, settling and delay margin: {'; '.join(map(kind_name, found.front))}.",
         *(f"{kind_name(name)} is not possible: {reason}" for name, reason in found.reasons.items()),

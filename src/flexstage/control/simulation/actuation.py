@@ -12,7 +12,7 @@ from flexstage.control.simulation.machine import Machine
 
 
 def rounder(steps: Array) -> Callable[[Array], Array]:
-    """Return a function that rounds numbers to multiples of `steps`, half to even (step 0: no rounding).
+    """Return a function that rounds numbers to multiples of `steps`, halves to the even multiple (step 0: no rounding).
 
     >>> rounder(np.array([0.0, 0.5]))(np.array([0.3, 1.7])).tolist()
     [0.3, 1.5]
@@ -24,7 +24,7 @@ def rounder(steps: Array) -> Callable[[Array], Array]:
 
 
 class Actuation:
-    """Simulated actuators of a loop, initially at the bias, with their last applied strokes and states of hysteresis and inverse model.
+    """Simulated actuators of a loop, initially at the bias, with the state of rate limits, hysteresis and inverse model.
 
     >>> from dataclasses import replace
     >>> from flexstage.control.example import integral_loop
@@ -51,8 +51,8 @@ class Actuation:
     def __call__(self, command: Array) -> tuple[Array, Array, Array]:
         """Compute requested, applied and free strokes (m,) [m] from the command (m,) of the next sample.
 
-        The requested stroke is the amplifier input, the applied stroke the amplifier output. All are equal without inverse, converter,
-        limits and hysteresis.
+        The requested stroke is the amplifier input, the applied stroke the amplifier output. The three strokes are equal without inverse,
+        converter, limits and hysteresis.
         """
         powers, model = self._machine.amplifiers, self._machine.compensation
         if model is not None:

@@ -1,4 +1,4 @@
-"""Inputs of a loop from outside, sample by sample: disturbances and noise."""
+"""External inputs of a loop, sample by sample: disturbances and noise."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.control.simulation.machine import Machine
 
 @dataclass(frozen=True, eq=False)
 class ExternalInputs:
-    """External inputs: `disturbances` (n, w) of the plant, and noise added to the `readings` (n, g) [m] and the `strokes` (n, m) [m]."""
+    """External inputs: `disturbances` (n, w) of the plant, noise of `readings` (n, g) [m], and noise of `strokes` (n, m) [m]."""
 
     disturbances: Array
     readings: Array
@@ -24,8 +24,9 @@ class ExternalInputs:
 def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> ExternalInputs:
     """Arrange named series (n,) of `count` samples in the order of the loop's inputs; missing series are zero.
 
-    Names are inputs of the plant except strokes (such as `ground.x`, `platform.fz`), and `noise.<gauge>` and `noise.<actuator>` [m]. Raises
-    `DesignError` for unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a lost reading.
+    A name is a plant input other than a stroke, for example `ground.x` or `platform.fz`, or it is `noise.<gauge>` or `noise.<actuator>`
+    [m]. Raises `DesignError` for unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a
+    lost reading.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -47,7 +48,7 @@ def _findings(named: Mapping[str, Array], known: list[str], count: int, readings
             yield Finding(name, "unknown input of the loop", suggest_nearest(name, known))
         elif values.shape != (count,):
             yield Finding(
-                name, f"wrong length (got {values.shape}, expected {count} samples, the length of the reference)", "Use equal lengths"
+                name, f"wrong length (got {values.shape}, expected {count} samples, the length of the reference)", "Use this length"
             )
         elif name not in readings and not np.all(np.isfinite(values)):
             yield Finding(name, "a number is not finite", "Correct the series")

@@ -22,10 +22,11 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True, eq=False)
 class Amplifiers:
-    """Amplifier model with one number per actuator (m,); strokes are free strokes relative to the bias.
+    """Amplifier model; each field has one number per actuator (m,).
 
-    The command is rounded to the converter's `step` [m] (0: no rounding). The rounded command is limited to the range from `low` to `high`
-    [m] and to the rate `slew` [m/s]. The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without voltage data).
+    Strokes are free strokes relative to the bias. The command is rounded to the converter's `step` [m] (0: no rounding). The rounded
+    command is limited to the range from `low` to `high` [m] and to the rate `slew` [m/s]. The voltage is `bias` + stroke / `gain` ([V],
+    [m/V]; NaN for a stack without voltage data).
     """
 
     low: Array
@@ -55,13 +56,14 @@ class Machine:
     A sample k begins with the readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), which are rounded to `resolution` (g,)
     [m] (0: no rounding). The gauge's last valid reading replaces a reading that is not finite or beyond `half_range` (g,) [m] (default:
     unlimited). The pose is the matrix `pose` (f, g) times y, and the error is reference minus pose. The `controller` computes
-    `command.<actuator>` from any of the inputs `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`. The voltage is computed
-    by the inverse of `compensation`, or is proportional to the command, and is limited by `amplifiers`. The free stroke is computed by
-    `hysteresis` from the voltage (reduced by `relief`), or is proportional to it. Finally, the states of plant and controller are computed
-    for sample k + 1. The input `applied` is the amplifier's output minus its input: zero except at a limit.
+    `command.<actuator>` from any of the inputs `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`. With `compensation`, its
+    inverse computes the voltage from the command; otherwise the voltage is proportional to the command. The voltage is limited by
+    `amplifiers`. With `hysteresis`, this model computes the free stroke from the voltage (reduced by `relief`); otherwise the free stroke
+    is proportional to the voltage. Finally, the states of plant and controller are computed for sample k + 1. The input `applied` is the
+    amplifier's output minus its input: zero except at a limit.
 
-    `plant` is sampled. The plant's inputs named in `actuators` are strokes, all other inputs are disturbances; strokes affect no gauge in
-    the same sample.
+    `plant` is sampled. The plant's inputs named in `actuators` are strokes, all other inputs are disturbances. A stroke affects no reading
+    in the same sample.
     """
 
     plant: System
@@ -139,7 +141,7 @@ def machine(
 ) -> Machine:
     """Assemble a plant with hardware and controller for simulation.
 
-    `electric` maps strokes to volts, which hysteresis and compensation require. `motions` are the plant outputs to keep (default: all).
+    `electric` maps strokes to volts; `hysteresis` and `compensation` require it. `motions` are the plant outputs to keep (default: all).
     Raises `DesignError` for a continuous loop, and in the same cases as `Machine`.
 
     >>> from flexstage.control.example import integral_loop
@@ -209,7 +211,7 @@ def _findings(given: Machine) -> Iterator[Finding]:
             "plant", "the readings depend on the stroke of the same sample", "Add a delay to the loop, or a bandwidth to the gauges"
         )
     if np.any(controller.D[:, [name.startswith("applied.") for name in controller.input_names]]):
-        yield Finding("controller", "the command depends on the applied input of the same sample", "Connect this input to states only")
+        yield Finding("controller", "the command depends on applied.<actuator> of the same sample", "Connect this input to states only")
     known = [f"{kind}.{name}" for kind in ("error", "reference", "pose") for name in given.names]
     known += [f"applied.{name}" for name in given.actuators]
     for name in controller.input_names:
@@ -239,6 +241,6 @@ def _electric(given: Machine) -> Iterator[Finding]:
             if np.isnan(gain):
                 yield Finding(actuator, f"{name} needs the stack's voltage range, which is missing", 'Add for example voltage_low = "0 V"')
     if given.compensation is not None and given.relief is not None:
-        yield Finding("compensation", "this hysteresis is for voltage drive, but the stacks have charge drive", "Omit the compensation")
+        yield Finding("compensation", "the inverse model is for voltage drive, but the stacks have charge drive", "Omit the compensation")
     if given.compensation is not None:
         yield from inverse_findings(given.compensation)

@@ -17,7 +17,7 @@ from flexstage.control.white_noise import gauge_noise
 
 
 class Stream(IntEnum):
-    """Random stream of each kind of source."""
+    """Random-number stream of each kind of noise source."""
 
     FLOOR = 16
     GAUGE = 17
@@ -25,12 +25,12 @@ class Stream(IntEnum):
 
 
 def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int = 0) -> dict[str, Array]:
-    """Generate series (samples,) by name for `simulate`: `ground.<c>` of the `floor`, noise of gauges and amplifiers.
+    """Generate noise series (samples,) by name for `simulate`: ground motions `ground.<c>`, noise of gauges, noise of amplifiers.
 
     The series are independent and Gaussian. Each series depends only on its source and the seed. Ground motion is linear between samples
-    (see `ramped` for the error). Gauge noise is the noise after lag and filter, with exact aliasing (`gauge_noise`). Amplifier noise is
-    white up to half the sampling rate. Rounding is not included: the simulation rounds. Raises `DesignError` for a continuous loop, and for
-    unknown ground motions.
+    (see `first_order_hold` for the error). Gauge noise is the noise after lag and filter, with exact aliasing (`gauge_noise`). Amplifier
+    noise is white up to half the sampling rate. Rounding is not included: the simulation rounds. Raises `DesignError` for a continuous
+    loop, and for unknown ground motions.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_series(integral_loop().plant, {"ground.x": Spectrum(1e-18)}, 1000, seed=3)
@@ -62,9 +62,9 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
 
 
 def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) -> Array:
-    """Generate a zero-mean Gaussian series (samples,) every `step` [s] with a one-sided density; `key` contains the seed and the stream.
+    """Generate a zero-mean Gaussian series (samples,) with a one-sided spectral density, sampled every `step` [s].
 
-    Frequencies range from 1/(2 samples step) to half the sampling rate; the spectrum outside is omitted.
+    Frequencies range from 1/(2 samples step) to half the sampling rate; the spectrum outside is omitted. `key` contains seed and stream.
 
     >>> one = series(Spectrum(2e-18), 100_000, 0.5e-3, (1,))
     >>> round(float(np.var(one)) / (2e-18 * 1000.0), 1)  # density times half the sampling rate
@@ -76,11 +76,11 @@ def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) 
 
 
 def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Array:
-    """Shape white Gaussian noise by a one-sided density (f,) at the frequencies of a series twice as long; return half the series.
+    """Generate Gaussian noise with a one-sided density (f,), given at the frequencies of a series of twice the length.
 
-    A series with the density S and the step T has the transform X(f) = W(f) (S(f) / 2 T)^(1/2); W is the transform of white numbers of unit
-    variance. The series is Gaussian and stationary, with the given density at its frequencies. Discarding half the series removes the
-    periodicity (Shinozuka and Deodatis, Applied Mechanics Reviews 44, 1991).
+    A series with the density S and the step T has the transform X(f) = W(f) (S(f)/(2 T))^(1/2), where W is the transform of white noise of
+    unit variance. The series is Gaussian and stationary, with the given density at its frequencies. Only half the series is returned, which
+    removes the periodicity (Shinozuka and Deodatis, Applied Mechanics Reviews 44, 1991).
 
     >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # density 2 T: unit variance, the unchanged white noise
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))

@@ -15,10 +15,10 @@ from flexstage.control.systems.system import System, select
 class Parts:
     """Matrices of plant and controller, by inputs and outputs.
 
-    The plant with strokes f, disturbances w, readings y and motions m is x+ = A x + `stroke` f + `disturbed` w, y = `reading` x +
-    `reading_w` w, m = `motion` x + `motion_f` f + `motion_w` w. The controller with reference r, pose q and amplifier limitation a
-    (`applied`) is z+ = `controller` z + `from_reference` r + `from_pose` q + `from_applied` a, command = `command` z + `command_r` r +
-    `command_q` q.
+    For strokes f, disturbances w, readings y and motions m, the plant's next state is x+ = A x + `stroke` f + `disturbed` w. Its outputs
+    are y = `reading` x + `reading_w` w and m = `motion` x + `motion_f` f + `motion_w` w. For the reference r, the pose q and the amplifier
+    limitation a (`applied`), the controller's next state is z+ = `controller` z + `from_reference` r + `from_pose` q + `from_applied` a.
+    The command is `command` z + `command_r` r + `command_q` q.
     """
 
     A: Array

@@ -20,15 +20,15 @@ from flexstage.spatial.frame import COMPONENTS
 
 @dataclass(frozen=True, eq=False)
 class Simulated(InNotebook):
-    """Simulated loop over time: every series has a row per sample, `times` (n,) [s].
+    """Simulated loop: every series has one row for each sample at `times` (n,) [s].
 
     `reference`, `pose` (estimated) and `error` (n, f) [m, rad] have a column for each of `coordinates`. The true `motions` (n, p) have
-    a column for each of `channels`. Four series (n, m) [m] contain strokes from the bias (with load feedforward: from its strokes),
-    with a column for each of `actuators`. `command` is the controller's output, `asked` the amplifier input (after inverse model and
-    converter), `given` the amplifier output (after limits), and `stroke` the stroke at the stage. `volts` (n, m) are NaN for a stack
-    without voltage data. `readings` (n, g) have a column for each of `gauges`, in its unit. `saturated` (m,) is the fraction of samples
-    at a range limit, `slewing` (m,) the fraction at a speed limit only. `out_of_range` (g,) is the fraction of samples with a reading
-    out of range or lost; the last valid reading then replaces it.
+    a column for each of `channels`. Four series (n, m) [m] contain strokes, with a column for each of `actuators`. Strokes are relative to
+    the bias (with load feedforward: relative to the bias plus the feedforward strokes). `command` is the controller's output, `asked` the
+    amplifier input (after inverse model and converter), `given` the amplifier output (after limits), and `stroke` the stroke at the stage.
+    `volts` (n, m) are NaN for a stack without voltage data. `readings` (n, g) have a column for each of `gauges`, in its unit. `saturated`
+    (m,) is the fraction of samples at a range limit, `slewing` (m,) the fraction at a speed limit only. `out_of_range` (g,) is the fraction
+    of samples with a reading out of range or lost; the last valid reading then replaces it.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
@@ -80,9 +80,9 @@ class Excursion:
 
 
 def other_motions(found: Simulated, moved: str) -> dict[str, Excursion]:
-    """Compute the cross-axis error: largest motion along every axis except the `moved` one, from its reference or from zero.
+    """Compute the largest deviation along every axis except `moved`: from its reference, or from zero for axes without control.
 
-    The result includes all recorded platform axes, controlled or not, translations and rotations.
+    These deviations are the cross-axis error. The result includes all recorded platform axes, translations and rotations.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -149,7 +149,7 @@ def simulation_result(given: Machine, found: Series) -> Simulated:
 def tracking(found: Simulated) -> Matrix:
     """Compute rms and peak tracking errors by coordinate: those measured by the loop, and those of the true platform pose.
 
-    The rms values are over all samples, including any rest at the end of the trajectory, which lowers them.
+    The rms values are computed from all samples. A rest at the end of the trajectory therefore lowers the rms values.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -171,10 +171,11 @@ def _rms(values: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class StepFigures:
-    """Step response figures by coordinate (f,): `settling` time [s] until the true error stays within `band` [m, rad].
+    """Step response results by coordinate (f,): `settling` time [s] until the true error stays within `band` [m, rad].
 
-    The settling time is infinite if the error does not settle. `overshoot` and `undershoot` are the largest motions beyond the step and in
-    the opposite direction, relative to the step (NaN without a step). `residual` [m, rad] is the true error at the end of the simulation.
+    The settling time is infinite if the error does not settle. `overshoot` is the largest motion beyond the step, `undershoot` the largest
+    motion opposite to the step. Both are fractions of the step (NaN for coordinates without a step). `residual` [m, rad] is the true error
+    at the end of the simulation.
     """
 
     coordinates: tuple[Channel, ...]
@@ -189,8 +190,8 @@ class StepFigures:
 def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0) -> StepFigures:
     """Compute settling time and overshoot of a simulated step at `start` [s].
 
-    The band is the fraction `share` of each coordinate's step or, without a step, of the largest step in the same unit. All values follow
-    from the error of the true pose.
+    The settling band of a coordinate is its step times `share`. For a coordinate without a step, the band is the largest step in the same
+    unit times `share`. All values are computed from the error of the true platform pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

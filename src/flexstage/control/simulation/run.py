@@ -19,10 +19,11 @@ _NONE: Mapping[str, Array] = {}
 def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annotated[Array, GAPS]] = _NONE) -> Simulated:
     """Simulate the loop's response to a reference (n, f) [m, rad] and disturbances (n,), from rest, sample by sample.
 
-    `disturbances` are named series. Names such as `ground.<c>` and `platform.fx` are inputs of the plant. `noise.<gauge>` [m] is added to a
-    reading before rounding; if it is not finite, the reading is lost. `noise.<actuator>` [m] is added to a free stroke. The simulation is
-    deterministic (see `noises`). Between samples, strokes and wrenches are constant and ground motion is linear; the plant has no
-    integration error (see `zero_order_hold`). Raises `DesignError` for unknown names, different lengths, and diverging numbers.
+    `disturbances` contains one series (n,) for each name. Names such as `ground.<c>` and `platform.fx` are inputs of the plant. A series
+    `noise.<gauge>` [m] is added to the readings of the gauge before rounding; where the series is not finite, the reading is lost. A series
+    `noise.<actuator>` [m] is added to the free stroke of the actuator. The simulation itself generates no noise (see `noise_series`).
+    Between samples, strokes and wrenches are constant and ground motion is linear; the plant has no integration error (see
+    `zero_order_hold`). Raises `DesignError` for unknown names, series of different lengths, and a diverging simulation.
 
     >>> import numpy as np
     >>> from flexstage.control.example import integral_loop

@@ -18,9 +18,9 @@ from flexstage.control.simulation.result import Series
 class RunningLoop:
     """Loop simulated by `advance`, initially at rest.
 
-    `disturbances` are series (`count`,), named as in `simulate`; the default `count` is the length of the longest series. At their end, the
-    series are replayed backwards, which preserves noise spectra. An axis that is not `held` uses its pose as reference: its error is zero,
-    without restoring action.
+    `disturbances` are series (`count`,), named as in `simulate`; the default `count` is the length of the longest series. After their end,
+    the series are replayed backwards, which preserves noise spectra. An axis that is not `held` uses its pose as reference: its error is
+    zero, without restoring action.
     """
 
     def __init__(self, given: Machine, disturbances: Mapping[str, Array], count: int | None = None) -> None:

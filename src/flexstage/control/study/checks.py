@@ -85,7 +85,7 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
     tables = {name: getattr(found, name) for name in ("acceleration", "velocity", "displacement") if getattr(found, name)}
     given = [*(["criterion"] if found.criterion is not None else []), *tables]
     if len(given) != 1:
-        what = f"{' and '.join(given)} contradict each other" if given else "no amplitude is specified"
+        what = f"{' and '.join(given)} exclude each other" if given else "no amplitude is specified"
         yield Finding(where, what, "Specify exactly one of criterion, acceleration, velocity, displacement")
         return
     if found.criterion is not None:
@@ -139,7 +139,7 @@ def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
         yield Finding("follow.method", what, "Use a raster or a sine, or method learning or inverse")
     shaped = found.method in (Following.ZV, Following.ZVD)
     if shaped and found.frequency is None:
-        yield Finding("follow.frequency", "a shaper needs the frequency of its mode", 'Use e.g. frequency = "106 Hz"')
+        yield Finding("follow.frequency", "a shaper needs the frequency of the mode that it suppresses", 'Use e.g. frequency = "106 Hz"')
     if not shaped and found.frequency is not None:
         yield Finding(
             "follow.frequency", f"method {found.method.value} does not use a frequency", "Remove frequency, or use method zv or zvd"
@@ -202,10 +202,10 @@ def _hysteresis(found: HystereticStacks) -> Iterator[Finding]:
 
 def _compensation(setup: LoopSetup) -> Iterator[Finding]:
     if Compensation.HYSTERESIS in setup.compensate and setup.amplifier.settings.charge is not None:
-        what = "the inverse applies to voltage drive, but the stacks have charge drive"
+        what = "the inverse model applies to voltage drive, but the stacks have charge drive"
         yield Finding("compensate", what, 'Remove "hysteresis" from compensate: with charge drive, the hysteresis is different')
     if Compensation.HYSTERESIS in setup.compensate and setup.hysteresis is None:
-        yield Finding("compensate", "the inverse needs a hysteresis of the stacks", "Add [hysteresis] with a file or a width")
+        yield Finding("compensate", "the inverse model needs a hysteresis of the stacks", "Add [hysteresis] with a file or a width")
     for each in dict.fromkeys(setup.compensate):
         if setup.compensate.count(each) > 1:
             yield Finding("compensate", f"{each.value} occurs {setup.compensate.count(each)} times", f"Use {each.value} only once")

@@ -21,9 +21,9 @@ class ControllerKind(Enum):
 
 
 SEARCHED_BY_DEFAULT = (ControllerKind.PI, ControllerKind.PID)
-"""Kinds that are optimised without a specified goal. LQG is not one of them, because its optimisation takes minutes."""
+"""Kinds that are optimised if no goal is specified. LQG is excluded, because its optimisation takes minutes."""
 SEARCHED = (*SEARCHED_BY_DEFAULT, ControllerKind.LQG)
-"""Kinds with optimisation-based tuning; the others are tuned to the highest bandwidth."""
+"""Kinds with optimisation-based tuning; all other kinds are tuned to the highest bandwidth."""
 
 
 class OfferedKind(str):
@@ -38,7 +38,7 @@ class OfferedKind(str):
 
 
 class Axes(Enum):
-    """Coordinates in which single loops are closed."""
+    """Choice of loops: one loop for each actuator, platform motion or mode."""
 
     ACTUATOR = "actuator"
     """One loop for each actuator, for the platform's error in actuator coordinates."""

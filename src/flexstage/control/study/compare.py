@@ -72,8 +72,8 @@ class ComparedController:
     `noise` the rms error of a coordinate in regulation. `settling` is the 2 % settling time (infinite: not settled). `overshoot` is a
     fraction of the step. `delay_margin` is the smallest delay margin of all loops. `gauge_share` is the largest fraction of a coordinate's
     mean-square noise that gauge noise and quantisation cause (absent: no disturbance). `tuned` describes the tuning, `detuned` is the same
-    controller with reduced gain. `slowly_rounding` are gauges whose rounding is not white, although `noise` assumes white rounding.
-    `warnings` are those of the loop study.
+    controller with reduced gain. `noise` assumes that rounding errors are white noise; `slowly_rounding` names the gauges for which this is
+    wrong. `warnings` are those of the loop study.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -81,7 +81,7 @@ class ComparedController:
         "crossover worst_noise slowest_settling largest_overshoot delay_margin peak gauge_share",
         head="controller",
         notes=(
-            "Values are the worst of all coordinates. Noise of the gauges: their fraction of the mean square noise, with quantisation.",
+            "Values are those of the worst coordinate. Noise of the gauges: fraction of mean-square noise from gauges and quantisation.",
             "{self.tuned}.",
         ),
     )
@@ -179,12 +179,12 @@ def compare_controllers(
     tell: ProgressCallback | None = None,
     workers: int = 0,
 ) -> Comparison:
-    """Tune PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS` for one set-up, and compare their step responses.
+    """Tune one controller of each kind for the same set-up, and compare their step responses.
 
-    PI and PID are optimised, unless the set-up specifies plain tuning; LQG is optimised for a specified goal. All other kinds are tuned to
-    the highest bandwidth within the same limit on the peak of the sensitivity. `workers` is the number of parallel processes (0: the
-    calling process); the results do not depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up specifies
-    gains that this kind does not have.
+    The kinds are PI, PID, integral resonant control, LQG, and the entries of the register `CONTROLLERS`. PI and PID are optimised, unless
+    the set-up disables optimisation; LQG is optimised only for a specified goal. All other kinds are tuned to the highest bandwidth within
+    the same limit on the peak of the sensitivity. `workers` is the number of parallel processes (0: the calling process); the results do
+    not depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up specifies gains that this kind does not have.
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)

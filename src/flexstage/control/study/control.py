@@ -59,7 +59,7 @@ class SingleLoop:
 
 @dataclass(frozen=True, eq=False)
 class Control:
-    """Controller as a system, with its components and its tuning (`None` for specified gains).
+    """Controller as a `system`, with its components `made_of` and its `tuning` (`None` for specified gains).
 
     `gains` (n, f) map poses to strokes: by the ideal kinematics, or with a correction of lost motion.
     """
@@ -101,7 +101,7 @@ def make_controller(given: ResolvedSetup, gains: Array, known: tuple[Tuning, ...
 
     `known` are tunings of the same loops with fewer modes; the optimisation starts from them.
 
-    Raises `DesignError` for invalid parameters, and for a bandwidth beyond the maximum, with this maximum and the reason.
+    Raises `DesignError` for invalid parameters, and for a bandwidth that is too high; the message states the highest bandwidth found.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.resolve import resolve

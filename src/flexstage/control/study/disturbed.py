@@ -24,7 +24,7 @@ _RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 def rest_time(closed: Loop, *, ringing: bool = False) -> float:
     """Return the time [s] for initial settling: eight time constants of the slowest pole, between 20 ms and 2 s, rounded up.
 
-    Oscillating poles are included only with `ringing`, that is if feedforward excites them. Poles of charge leakage are not included.
+    Oscillating poles are included only if `ringing` is true, because feedforward excites them. Poles of charge leakage are not included.
 
     >>> from flexstage.control.example import integral_loop
     >>> rest_time(integral_loop(gain=300.0))
@@ -44,7 +44,7 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
 class DisturbedLoop:
     """Loop with noise. The noise starts `rest` [s] before a simulation, so that it is stationary during the simulation.
 
-    Floor vibration fades in.
+    During this time, floor vibration increases smoothly from zero.
     """
 
     given: ResolvedSetup
@@ -76,5 +76,5 @@ class DisturbedLoop:
 
 
 def part_of(given: Machine, found: Simulated, part: slice) -> Simulated:
-    """Return the samples `part` of a simulation, timed from their start. Fractions of time at limits refer to these samples."""
+    """Return the samples `part` of a simulation; times and fractions of time at limits refer to these samples."""
     return simulation_result(given, Series(**{field.name: getattr(found, field.name)[part] for field in fields(Series)}))

@@ -24,7 +24,7 @@ FORMAT = "flexstage loop 1"
 def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
     """Return the set-up in a file. Relative file names in the set-up file refer to its folder.
 
-    Raises `DesignError` with all errors, each finding with file, line and key.
+    Raises `DesignError` with all errors of the file; each error names file, line and key.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -37,7 +37,10 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
 
 @dataclass(frozen=True)
 class SetupChange:
-    """Override of a set-up: a new raw value, or a function of the value in the file. Errors name its `option`, e.g. --bandwidth."""
+    """Override of a key of a set-up: `value` is a new raw value, or a function of the value in the file.
+
+    Errors name the command-line `option`, for example --bandwidth.
+    """
 
     option: str
     value: Any

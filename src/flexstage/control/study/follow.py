@@ -28,7 +28,8 @@ def follow(
 ) -> tuple[Simulated, dict[str, Any]]:
     """Simulate a path (n, f) with a tracking method, with rest before and after the path; also return the tracking fields of `Run`.
 
-    Raises `DesignError` if the uncertain loop permits no inverse at any frequency, and for too few periods of repetitive control.
+    Raises `DesignError` if the mode shifts leave no frequency band for inversion (see `robust_band`). The error is also raised if the
+    path has fewer than two periods for repetitive control.
     """
     step = closed.step or 1.0
     around = round(noisy.rest / step)

@@ -200,7 +200,7 @@ def _charges(mechanism: Mechanism, model: LinearModel, setup: LoopSetup) -> tupl
 
 
 def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
-    """Return the same loop on the identified plant of a test. Raises `DesignError` as `measured_plant` does.
+    """Return the set-up with the identified plant of a test instead of its model. Raises `DesignError` as `measured_plant` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.experiment.example import one_mode_record

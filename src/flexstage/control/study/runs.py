@@ -285,7 +285,7 @@ def _with_legs(run: Run, computed: Machine) -> Run:
 def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None = None) -> Machine:
     """Build the simulation model of a loop: hardware with limits and quantisation, and hysteretic `stacks`, with creep if specified.
 
-    Its bias includes the strokes of load feedforward; limits are relative to this bias.
+    The amplifiers' bias includes the strokes of load feedforward; limits are relative to this bias.
     """
     if stacks is None:
         found = machine(given.plant, control.system, _electric(given))
@@ -306,7 +306,7 @@ def _electric(given: ResolvedSetup) -> Drive | None:
 
 
 def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simulated | None:
-    """Simulate the steady state of the loop in regulation, with all noise; `None` without noise other than rounding."""
+    """Simulate the steady state of the loop in regulation, with all noise; `None` if rounding is the only noise."""
     hardware = given.plant.hardware
     noisy = given.floor or any(each.noise_density for each in (*hardware.sensors.values(), *hardware.amplifiers.values()))
     if not noisy:

@@ -1,6 +1,6 @@
 """Set-up of a loop, with the keys of its file: sampling, amplifier, gauges, floor, controller, compensation, trajectory.
 
-The file reader and the schema are generated from the quantities of the fields.
+The file reader and the JSON schema are generated from the annotations of the fields.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class GaugeSetup(CheckedFields):
 class VibrationSetup(CheckedFields):
     """Floor vibration along one axis: a named `criterion`, or amplitude densities of `acceleration`, `velocity` or `displacement`.
 
-    A single density is white noise. Between several `frequencies`, each with a density, the logarithm of the density is linear in the
+    A single density means white noise. Between several `frequencies`, each with a density, the logarithm of the density is linear in the
     logarithm of the frequency. Outside these frequencies, the density is zero.
     """
 
@@ -112,7 +112,7 @@ class VibrationSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class Floor(CheckedFields):
-    """Floor vibration of each axis. Default: no vibration."""
+    """Floor vibration along each axis. Default: no vibration."""
 
     x: VibrationSetup | None = None
     y: VibrationSetup | None = None
@@ -130,7 +130,7 @@ class NotchSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class PrefilterSetup(CheckedFields):
-    """Second-order low-pass prefilter of the reference: `frequency`, `damping`; above the corner `lead` the gain falls less steeply."""
+    """Second-order low-pass prefilter of the reference, with `frequency` and `damping`; its gain falls less steeply above `lead`."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
     damping: Annotated[float, RATIO, POSITIVE] = 1.0
@@ -139,9 +139,10 @@ class PrefilterSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class LoopNumbers(CheckedFields):
-    """Parameters of the loops named in `axes`: x, rz ... in platform coordinates, mode1 ... in modal ones, or names of actuators.
+    """Parameters of the loops that `axes` lists by name.
 
-    Unspecified parameters have the common values of all loops; `notches` are added to the common notches.
+    The names of the loops are x, rz etc. in platform coordinates, mode1 etc. in modal coordinates, and the names of actuators in actuator
+    coordinates. Unspecified parameters have the common values of all loops; `notches` are added to the common notches.
     """
 
     axes: tuple[str, ...]
@@ -182,8 +183,8 @@ class ControllerSetup(CheckedFields):
     gains `proportional`, `integral` and `derivative`, with the corner `filter` of the derivative, apply to all loops; `loops` override them
     for single loops. `notches` are added to the automatic notches. `prefilter` filters the reference.
 
-    By default, PI and PID are optimised for the `goal` balance, with a peak of the sensitivity of at most `sensitivity`. `quick`, a
-    bandwidth, gains or notches disable the optimisation.
+    By default, PI and PID are optimised for the objective `balance` (see `goal`), with a peak of the sensitivity of at most `sensitivity`.
+    This default optimisation is disabled by `quick`, by a specified bandwidth, gain or notch, and by `notching` none.
     """
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
@@ -203,7 +204,7 @@ class ControllerSetup(CheckedFields):
 
     @property
     def search_goal(self) -> GoalSetup | None:
-        """Goal of the optimisation, specified or by default; `None` for plain tuning and for specified gains."""
+        """Goal of the optimisation, specified or by default; `None` if the controller is not optimised."""
         plain = self.quick or self.stated or self.bandwidth is not None or self.notches or self.notching is Notching.NONE
         return self.goal if self.goal is not None or plain or self.law not in SEARCHED_BY_DEFAULT else GoalSetup()
 
@@ -245,9 +246,9 @@ class DampingSetup(CheckedFields):
 class FollowSetup(CheckedFields):
     """Tracking method for a trajectory known in advance; the error is the difference of the motion and the trajectory.
 
-    `method` is the inverse of the modelled loop, iterative learning (with `passes` and `gain`), or repetitive control (with `gain`) of a
-    periodic path: raster or sine. Inverse, learning and repetitive control act only at frequencies where relative mode shifts up to
-    `spread` are permissible. Alternatively, `method` is an input shaper for a mode of `frequency` and `damping` ratio.
+    There are four kinds of `method`. The first is the inverse of the modelled loop. The second is iterative learning, with `passes` and
+    `gain`. The third is repetitive control of a periodic path (raster or sine), with `gain`. These three act only at frequencies where they
+    tolerate relative mode shifts up to `spread`. The fourth is an input shaper for a mode with this `frequency` and `damping` ratio.
     """
 
     method: Following
@@ -260,12 +261,12 @@ class FollowSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class HystereticStacks(CheckedFields):
-    """Hysteresis of the stacks: a model in a `file` of `flexstage hysteresis`, or only the loop's `width` as a fraction of the stroke.
+    """Hysteresis of the stacks: a model in a `file` from `flexstage hysteresis`, or only the loop's `width` as a fraction of the stroke.
 
-    The model is scaled to each stack's stroke and voltage, and defines the inverse. `plant` selects the simulated stacks: the model itself,
-    or Bouc-Wen stacks of equal width, whose hysteresis the inverse does not cancel exactly. The default of `plant` is the model if a `file`
-    is specified, and Bouc-Wen if a `width` is specified. `creep` is the creep per decade of time after 0.1 s, as a fraction of the stroke
-    (default: the creep in the file).
+    The model is scaled to the stroke and voltage of each stack. The compensation of hysteresis is the inverse of this model. `plant`
+    selects the simulated stacks: the model itself, or Bouc-Wen stacks of equal width. The inverse does not cancel the hysteresis of
+    Bouc-Wen stacks exactly. The default of `plant` is the model if a `file` is specified, and Bouc-Wen if a `width` is specified. `creep`
+    is the creep per decade of time after 0.1 s, as a fraction of the stroke (default: the creep in the file).
     """
 
     file: str | None = None
@@ -276,10 +277,10 @@ class HystereticStacks(CheckedFields):
 
 @dataclass(frozen=True)
 class StepMotion(CheckedFields):
-    """Step of each specified coordinate, one at a time. Default: 1 um and 10 urad, for all coordinates of the stage.
+    """Steps of the specified coordinates, one after the other. Default: steps of all coordinates of the stage, by 1 um or 10 urad.
 
-    `speed`, `acceleration` and `jerk` together replace the step by a motion profile within these limits. For rotations, a metre represents
-    a radian.
+    `speed`, `acceleration` and `jerk` together replace the step by a motion profile within these limits. In the limits of a rotation, 1 m
+    is used for 1 rad.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
@@ -292,9 +293,9 @@ class StepMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class RasterMotion(CheckedFields):
-    """Raster scan: `lines` of a `length`, a `pitch` apart, at constant `speed`, with reversals at an `acceleration`.
+    """Raster scan: number of `lines`, their `length` and spacing `pitch`, constant `speed` on the lines, and `acceleration` in reversals.
 
-    The lines are along the axis `fast`, the pitch along `slow`. For rotations a metre represents a radian: a length of 20 um along rx is a
+    The lines are along the axis `fast`, the pitch along `slow`. For rotations, 1 m is used for 1 rad: a length of 20 um along rx is a
     rotation of 20 urad.
     """
 
@@ -313,7 +314,7 @@ class RasterMotion(CheckedFields):
 class SpiralMotion(CheckedFields):
     """Spiral from the centre to `radius`, turns a `pitch` apart, at constant `speed`, in the plane of `first` and `second`.
 
-    For rotations a metre represents a radian.
+    If `first` or `second` is a rotation, 1 m is used for 1 rad.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "spiral")
@@ -329,7 +330,7 @@ class SpiralMotion(CheckedFields):
 class SineMotion(CheckedFields):
     """Simultaneous sines of all specified coordinates at `frequency`, for a number of `periods`.
 
-    Default: 1 um (10 urad) of the stage's first coordinate.
+    By default, only the stage's first coordinate moves, with an amplitude of 1 um (10 urad for a rotation).
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "sine")
@@ -353,11 +354,12 @@ TrajectorySetup: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMoti
 
 @dataclass(frozen=True)
 class LoopSetup(CheckedFields):
-    """Loop set-up: plant `model`, sampling `rate`, output `delay`, and the tables of all components.
+    """Set-up of a control loop: plant `model`, sampling `rate`, output `delay`, and one table of keys for each component.
 
     The default rate is 10 kHz, or ten times the highest platform mode for faster stages; the default delay is one sample. `modes` is the
     number of retained modes, lowest first (default: all significant modes); the static compliance of other modes is kept. The simulation
-    lasts `seconds` (default: the trajectory and settling); `seed` determines its random numbers.
+    lasts `seconds` (default: the duration of the trajectory plus a time for settling). `seed` determines the random numbers of the
+    simulation.
 
     >>> LoopSetup().controller.law.value
     'pi'

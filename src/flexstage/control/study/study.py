@@ -134,7 +134,7 @@ class LoopStudy(InNotebook):
 
     @property
     def second_order(self) -> Annotated[SecondOrder | None, VIEW]:
-        """Error of the linear kinematics along the simulated trajectories; null at an operating point, or without rotation and bending."""
+        """Error of the linear kinematics along the simulated trajectories; null at an operating point, or if no part rotates or bends."""
         given = self.settled
         if given.displaced or not self.runs:
             return None
@@ -178,11 +178,12 @@ def loop_study(
     """Analyse the control loop of a stage for a set-up. Missing keys have default values.
 
     The plant is linearised at an operating point `there`, if specified. Without an operating point, the plant is the set-up's model of the
-    stage, or the lumped model under permanent load if this load is significant. With a `solid`, the plant is the finite-element model of
-    the nominal stage. With a `test`, the plant is the identified plant from strokes to gauges (`measured_plant`), and margins are also
-    computed from the measured responses (`measured`).
+    stage, or the lumped model under permanent load if this load is significant. If `solid` is specified, the plant is the finite-element
+    model of the nominal stage. If `test` is specified, the plant is the identified plant from strokes to gauges (`measured_plant`); the
+    field `measured` then contains margins computed from the measured responses.
 
-    Raises `DesignError` as `resolve`, `make_controller` and `runs` do, and for an unstable loop, with the cause.
+    Raises `DesignError` in the same cases as `resolve`, `make_controller` and `runs`. Also raises `DesignError` for an unstable loop; the
+    error names the cause.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.setup import ControllerSetup
@@ -250,7 +251,7 @@ def loop_study(
 
 @check_arguments
 def sensitivity_crossover(mechanism: Mechanism) -> float | None:
-    """Return the lowest sensitivity crossover [Hz] of all coordinates with the default controller. Raises the errors of `loop_study`.
+    """Return the lowest sensitivity crossover [Hz] of all coordinates with the default controller; raises errors as `loop_study` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> 300.0 < sensitivity_crossover(parallelogram()) < 1000.0
@@ -267,7 +268,7 @@ def _reasons(*, is_closed: bool, forced: bool, tested: bool) -> dict[str, str]:
 
 
 def pose_gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:
-    """Compute the gains (n, f) from commanded poses to strokes (corrected for lost motion if specified) or inputs of force actuators."""
+    """Compute gains (n, f) from commanded poses to strokes or forces; strokes are corrected for lost motion if specified."""
     if lost is not None and Compensation.LOST_MOTION in given.setup.compensate:
         return np.real(first_design(np.asarray(lost.correction.values), 2))
     return given.plant.coordinates.strokes
@@ -286,7 +287,7 @@ def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
     """Warnings for rounding that is not white noise."""
     if noise.slowly_rounding:
         what = f"readings of {', '.join(noise.slowly_rounding)} change by less than half a step per sample, so rounding is not white noise"
-        advice = "Use the simulated rms and its interval. A finer resolution, or noise of half a step, makes rounding white"
+        advice = "Use the simulated rms and its interval. With a finer resolution, or noise of half a step, rounding becomes white noise"
         yield Finding("gauges", what, advice)
 
 
@@ -310,10 +311,10 @@ def _warnings(given: ResolvedSetup) -> list[Finding]:
             found.append(Finding("damping.ratio", what, advice))
         quiet = [each.actuator for each in yielding.sensed if each.noise is None]
         if quiet:
-            found.append(Finding("damping", f"no specified sensor noise for the legs of {', '.join(quiet)}", "Specify damping.noise"))
+            found.append(Finding("damping", f"no noise specified for the leg sensors of {', '.join(quiet)}", "Specify damping.noise"))
     if given.setup.hysteresis is not None and given.charge is not None:
         left, corner = 100.0 * float(np.max(given.charge.residual_hysteresis)), float(np.max(given.charge.corners))
-        what = f"above {corner:.3g} Hz, charge drive reduces the simulated hysteresis to {left:.3g} %; far below, it has no effect"
+        what = f"above {corner:.3g} Hz, charge drive reduces the simulated hysteresis to {left:.3g} %; far below, the drive has no effect"
         found.append(
             Finding(
                 "hysteresis",

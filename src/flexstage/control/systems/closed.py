@@ -24,7 +24,7 @@ class LoopBreak(Enum):
     COMMAND = "command"
 
     def channels(self, given: Plant) -> tuple[Channel, ...]:
-        """Return the signals of a plant's loop at the loop-breaking point."""
+        """Return the channels at the loop-breaking point: the coordinates of the pose, or the commands."""
         return given.coordinates.motions("pose.") if self is LoopBreak.POSE else given.coordinates.commands("command.")
 
 
@@ -57,10 +57,10 @@ class Loop:
 def loop(given: Plant, controller: System) -> Loop:
     """Connect a controller to a plant.
 
-    The inputs of the controller are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`. `applied` remains
-    unconnected, because a linear loop has no saturation. The controller's outputs are all `command.<actuator>`. The controller's time step
-    must equal the hardware's step (a continuous controller has none). Raises `DesignError` if channels or steps do not match, and for an
-    algebraic loop without solution.
+    For each coordinate c of the loop, the controller can have the inputs `error.<c>`, `reference.<c>` and `pose.<c>`. It can also have
+    inputs `applied.<actuator>`, which remain unconnected, because a linear loop has no saturation. Its outputs must be the commands
+    `command.<actuator>` of all actuators. The controller's time step must equal the hardware's step (a continuous controller has none).
+    Raises `DesignError` if channels or steps do not match, and for an algebraic loop without solution.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.control.plant_models.plants import plant
@@ -126,7 +126,7 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
 
 
 def open_everywhere(closed: Loop) -> System:
-    """Return the loop opened simultaneously at all poses and commands (channels in this order), for factors at both sides of the plant.
+    """Return the loop opened simultaneously at all poses and commands (channels in this order), for gain and phase factors in both.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = open_everywhere(integral_loop())
@@ -223,7 +223,7 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
             if name not in known
         ),
         *(
-            Finding("controller", f"missing output {name}", "Add a command for every actuator, possibly zero")
+            Finding("controller", f"missing output {name}", "Add a command output for every actuator; it may be zero")
             for name in _names(LoopBreak.COMMAND.channels(given))
             if name not in controller.output_names
         ),

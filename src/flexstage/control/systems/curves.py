@@ -1,4 +1,4 @@
-"""Sensitivities of a loop over a resolving frequency grid, and their crossings of a value."""
+"""Sensitivities of a loop on a frequency grid that resolves all resonances, and frequencies at which they cross a value."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ROUNDS, _MOST = 8, 20_000
 class Curves:
     """Sensitivity S = (I + L)^-1 of a loop opened at `cut`, complex (f, n, n) over `frequencies` (f,) [Hz].
 
-    A single loop, with the others closed, has L_i = 1/S_ii - 1. `response` evaluates S at any frequency.
+    The open loop of channel i, with the other loops closed, is L_i = 1/S_ii - 1. `response` evaluates S at any frequency.
     """
 
     cut: LoopBreak
@@ -48,7 +48,7 @@ class Curves:
 
 
 def sensitivity(open_loop: System) -> System:
-    """Return S = (I + L)^-1 as a system with the names of L's outputs on both sides.
+    """Return S = (I + L)^-1 as a system; its inputs and outputs have the names of L's outputs.
 
     >>> from flexstage.control.example import integral_loop
     >>> found, far = open_at(integral_loop(), LoopBreak.POSE), np.array([40.0])
@@ -86,7 +86,7 @@ def curves(closed: Loop, cut: LoopBreak) -> Curves:
 
 
 def rates_of(poles: Array, step: float | None, least: float = 1e-6) -> Array:
-    """Convert poles to rates [1/s]: unchanged, or ln z / T for a sampled system (poles at 0 become fast poles).
+    """Convert poles to rates [1/s]: poles are unchanged, or for a sampled system ln(z)/T (a pole z = 0 becomes a fast pole).
 
     >>> rates_of(np.array([np.exp(-0.5)]), 0.1).round(9).tolist()
     [(-5+0j)]
@@ -95,7 +95,7 @@ def rates_of(poles: Array, step: float | None, least: float = 1e-6) -> Array:
 
 
 def points_around(rates: Array) -> Array:
-    """Return frequencies [Hz] around each resonance, at multiples of its half width; for damping above 0.5 only its own frequency.
+    """Return frequencies [Hz] around each resonance at multiples of its half width (above 50 % damping only the natural frequency).
 
     >>> points_around(np.array([-1.0 + 100.0j])).round(3)[4:7].tolist()  # 100/(2 pi), and 1/(2 pi) either side
     [15.756, 15.915, 16.075]
@@ -107,7 +107,7 @@ def points_around(rates: Array) -> Array:
 
 
 def dense_frequencies(poles: Array, step: float | None) -> Array:
-    """Return frequencies [Hz] that resolve a system with these poles: some per decade, and more around each resonance.
+    """Return frequencies [Hz] that resolve a system with these poles: about 12 per decade, and more around each resonance.
 
     >>> found = dense_frequencies(np.array([-1.0 + 100.0j, -1.0 - 100.0j]), None)
     >>> round(float(found[0]), 4), round(float(found[-1])), len(found)
@@ -146,7 +146,7 @@ def sign_changes(values: Array) -> Array:
 
 
 def roots(of: Callable[[Array], Array], ends: tuple[Array, Array], values: tuple[Array, Array]) -> Array:
-    """Find zeros of a function within brackets (low, high) (k,) with `values` of opposite signs, all at once.
+    """Find k zeros of a function at once, within brackets `ends` (low, high) at which its `values` have opposite signs.
 
     The method is the Illinois variant of the false-position method; it is accurate to rounding error.
 

@@ -32,9 +32,10 @@ def peak(system: System) -> Peak:
     """Compute the H-infinity norm of a stable system H (supremum of its largest singular value) with the relative accuracy 1e-9.
 
     The accuracy is only 1e-6 if the peak is less than 1e-6 above the value at half the sampling rate (for a continuous system: the direct
-    gain). A number gamma is a singular value of H if and only if the Hamiltonian matrix of gamma has an eigenvalue on the imaginary axis
-    (Bruinsma and Steinbuch, Systems & Control Letters 14, 1990). No peak between frequencies is therefore missed. Sampled systems are
-    mapped by z = (1 + s)/(1 - s), which preserves the norm. Raises `DesignError` for an unstable system, which has no steady response.
+    gain). A number gamma is a singular value of H at some frequency if and only if the Hamiltonian matrix of gamma has an eigenvalue on the
+    imaginary axis (Bruinsma and Steinbuch, Systems & Control Letters 14, 1990). No peak between frequencies is therefore missed. Sampled
+    systems are mapped by z = (1 + s)/(1 - s), which preserves the norm. Raises `DesignError` for an unstable system, which has no steady
+    response.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -60,7 +61,10 @@ def peak(system: System) -> Peak:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Continuous `system` that represents another system at s = j nu: nu is 2 pi f / `unit` or, if the other is sampled, tan(pi f T)."""
+    """Continuous `system` whose response at s = j nu equals the response of an original system at the frequency f.
+
+    For a continuous original, nu = 2 pi f/`unit`. For an original sampled every T = `step` [s], nu = tan(pi f T).
+    """
 
     system: System
     unit: float

@@ -15,10 +15,11 @@ from flexstage.control.systems.system import System
 def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) -> System:
     """Discretise a continuous system by zero-order hold with `step` [s] and input `delay` [s]; exact at the samples.
 
-    With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d], Gamma_0
-    = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled Systems, 1997,
-    section 2.3). If f = 0, the input changes at a sample; outputs then have the value after this change, but the first `early` outputs the
-    value before it. All inputs have the same delay. Raises `DesignError` for a sampled system, and for invalid times.
+    For the step T and the delay (d + f) T, with an integer d and 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] +
+    Gamma_1 u[k-d-1] + Gamma_0 u[k-d], Gamma_0 = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and
+    Wittenmark, Computer-Controlled Systems, 1997, section 2.3). If f = 0, the input changes at a sample. The first `early` outputs then
+    have the value before this change, all other outputs the value after it. All inputs have the same delay. Raises `DesignError` for a
+    sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -57,9 +58,9 @@ def first_order_hold(system: System, step: float) -> System:
 
     x[k+1] = e^{AT} x[k] + (Gamma - Gamma_1) u[k] + Gamma_1 u[k+1], Gamma_1 = int_0^T e^{A(T-s)} (s/T) ds B (Franklin, Powell and Workman,
     Digital Control of Dynamic Systems, 1998, section 6.3.2). The result has the states x[k] - Gamma_1 u[k], because x[k+1] requires the
-    future input u[k+1]. For smooth inputs such as floor motion, the relative error is (omega T)^2/12, without the jumps of a zero-order
-    hold. For motion relative to the floor, the error depends on the resonance omega_0: (omega_0 T)^2/12, about 1e-3 for omega_0 T = 0.1.
-    Raises `DesignError` for a sampled system, and for invalid times.
+    future input u[k+1]. For smooth inputs such as floor motion at the angular frequency omega, the relative error is (omega T)^2/12,
+    without the jumps of a zero-order hold. For motion relative to the floor, the relative error is (omega_0 T)^2/12 with the resonance
+    omega_0, about 1e-3 for omega_0 T = 0.1. T is the step. Raises `DesignError` for a sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -95,7 +96,7 @@ def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
 
 
 def bilinear(system: System, step: float, prewarp: float | None = None) -> System:
-    """Discretise a continuous controller by Tustin's rule (bilinear), s = c (z - 1)/(z + 1), c = 2/T.
+    """Discretise a continuous controller by Tustin's rule (bilinear), s = c (z - 1)/(z + 1), c = 2/T, T = `step`.
 
     With `prewarp` f [Hz], c = 2 pi f / tan(pi f T): the response at f is exact. Poles in the left half plane stay stable. Raises
     `DesignError` for a sampled system, and for `prewarp` above half the sampling rate.
@@ -110,7 +111,7 @@ def bilinear(system: System, step: float, prewarp: float | None = None) -> Syste
     require(_findings(system, step, 0.0))
     if prewarp is not None and not 0.0 < prewarp < 0.5 / step:
         what = f"{prewarp:g} Hz is not between 0 and half the sampling rate, {0.5 / step:g} Hz"
-        require([Finding("prewarp", what, "Choose a frequency in between, or sample faster")])
+        require([Finding("prewarp", what, "Choose a lower frequency, or sample faster")])
     factor = 2.0 / step if prewarp is None else 2.0 * np.pi * prewarp / np.tan(np.pi * prewarp * step)
     identity = np.eye(len(system.A))
     inverse = np.linalg.inv(factor * identity - system.A)

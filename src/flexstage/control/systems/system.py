@@ -69,7 +69,7 @@ class System(CheckedFields):
 
     @cached_property
     def schur_form(self) -> tuple[Array, Array, Array]:
-        """Return T, Q^H B and C Q of the complex Schur form A = Q T Q^H (T triangular), after balancing."""
+        """Matrices T, Q^H B and C Q of the complex Schur form A = Q T Q^H (T triangular), after balancing."""
         if not np.any(np.tril(self.A, -1)):  # single-loop laws are already triangular
             return self.A.astype(complex), self.B.astype(complex), self.C.astype(complex)
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
@@ -232,8 +232,8 @@ def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple
     """Connect systems by signal names: every input in `links` is a weighted sum of outputs and of the new system's `inputs`.
 
     An input without an entry in `links` is connected to the new input, or to the output, with the same name. The inputs are u = F y + G w,
-    with outputs y and new inputs w; therefore u = (I - F D)^-1 (F C x + G w). Raises `DesignError` for inputs that remain unconnected,
-    unknown names, different steps, and an algebraic loop (I - F D singular).
+    with outputs y, new inputs w and the weights F and G; therefore u = (I - F D)^-1 (F C x + G w). Raises `DesignError` for inputs that
+    remain unconnected, unknown names, different steps, and an algebraic loop (I - F D singular).
 
     >>> unit = Channel("r", "m")
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), (Channel("e", "m"),), (Channel("y", "m"),))

@@ -12,7 +12,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
-    """Find poses (n, f) outside the `polytope` of reachable poses, the first and the worst time, and a permissible scale.
+    """Check poses (n, f) against the `polytope` of reachable poses; the finding names the first and the worst time, and a remedy.
 
     The columns of `poses` are the polytope's coordinates. The boundary counts as reachable.
 

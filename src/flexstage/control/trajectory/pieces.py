@@ -15,7 +15,7 @@ from flexstage.base.number import Array
 class Pieces:
     """Piecewise polynomial in time [s], a column for each coordinate; constant before the first and after the last knot.
 
-    `coefficients` (k, m, c) have the highest power first; time counts from the first knot of each piece. `knots` (m + 1,) are the times [s]
+    `coefficients` (k, m, c) have the highest power first; time counts from the start of each piece. `knots` (m + 1,) are the times [s]
     at which pieces start or end.
     """
 
@@ -59,7 +59,7 @@ def rest(position: Array) -> Array:
 def smooth(start: Array, end: Array, time: float) -> Array:
     """Compute coefficients (6, c) of the quintic rest-to-rest move: start + (end - start)(10 s^3 - 15 s^4 + 6 s^5), s = t/`time` [s].
 
-    For a distance d, the largest speed is 15/8 d/time, the largest acceleration 10/3^(1/2) d/time^2.
+    For a distance d, the largest speed is (15/8) d/`time`, the largest acceleration is (10/3^(1/2)) d/`time`^2.
 
     >>> move = join([(2.0, smooth(np.array([0.0]), np.array([1.0]), 2.0))])
     >>> move.at(np.array([1.0, 2.0])).ravel().tolist()

@@ -23,9 +23,10 @@ class Limits(CheckedFields):
 def profile(distance: float, limits: Limits) -> Pieces:
     """Compute the time-optimal move over a `distance` [m, rad] within `limits`: jerk +j, 0, -j, constant speed, then -j, 0, +j.
 
-    The durations of constant jerk t_j, of constant acceleration t_a and of constant speed t_v are computed in this sequence (Biagiotti and
-    Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008, section 3.4), with t_j = min(a/j, (v/j)^(1/2), (d/2j)^(1/3)).
-    Raises `DesignError` for limits that are not positive and finite.
+    The durations t_j of constant jerk, t_a of constant acceleration and t_v of constant speed are computed in this order (Biagiotti and
+    Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008, section 3.4). The first is t_j = min(a/j, (v/j)^(1/2),
+    (d/(2 j))^(1/3)), with the limits v of speed, a of acceleration and j of jerk, and the distance d. Raises `DesignError` for limits that
+    are not positive and finite.
 
     >>> move = profile(1.0, Limits(speed=1e9, acceleration=1e9, jerk=32.0))  # jerk alone counts: 4 (d/2j)^(1/3)
     >>> move.duration, move.at(np.array([0.5, 1.0])).ravel().tolist()

@@ -19,11 +19,11 @@ _STEEPEST = 10.0 / 3.0**0.5
 
 @dataclass(frozen=True, eq=False)
 class Raster(CheckedFields):
-    """Raster of `lines` parallel lines of a `length`, a `pitch` apart [m], centred at zero, at constant `speed` [m/s].
+    """Raster of parallel lines, centred at zero: number `lines`, `length` and spacing `pitch` of the lines [m], constant `speed` [m/s].
 
     Reversals are outside the lines: the fast coordinate decelerates uniformly to the opposite speed, while the slow coordinate moves
-    smoothly by the pitch. No acceleration exceeds `acceleration` [m/s^2]; a reversal lasts at least as long as the slow move. The approach
-    from 0 and the return to 0 are smooth. `overshoot` is the distance by which reversals exceed the lines.
+    smoothly by the pitch. No acceleration exceeds `acceleration` [m/s^2]; a reversal lasts at least as long as the move by the pitch. The
+    approach from 0 and the return to 0 are smooth. `overshoot` is the distance by which reversals exceed the lines.
 
     >>> raster = Raster(length=10e-6, pitch=1e-6, lines=3, speed=1e-3, acceleration=20.0)
     >>> round(raster.overshoot * 1e9, 6)  # turns are as slow as the step: 0.54 ms
@@ -44,7 +44,7 @@ class Raster(CheckedFields):
 
     @property
     def overshoot(self) -> float:
-        """Distance [m] by which reversals exceed the lines: v^2 / 2 a."""
+        """Distance [m] by which reversals exceed the lines: v^2/(2 a), with the line speed v and the deceleration a."""
         return 0.5 * self.speed**2 / self._swing
 
     @property
@@ -65,7 +65,7 @@ class Raster(CheckedFields):
 
     @property
     def repeats(self) -> tuple[float, float]:
-        """Start and end of the periodic section [s]: from the start of the first line to the end of the last."""
+        """Start and end of the periodic section [s]: from the start of the first scan line to the end of the last scan line."""
         starts = self.line_starts
         return float(starts[0]), float(starts[-1]) + self.length / self.speed
 

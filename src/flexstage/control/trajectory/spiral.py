@@ -18,7 +18,7 @@ from flexstage.control.trajectory.pieces import Pieces, join
 class Spiral(CheckedFields):
     """Spiral r = b theta from 0 to a final `radius` [m], with a `pitch` = 2 pi b between turns [m], at constant path `speed` [m/s].
 
-    `ramp` [s] is the duration of the linear speed rise at the start, and of the fall at the end. The path's length is s = b/2 (theta (1 +
+    `ramp` [s] is the duration of the linear speed rise at the start, and of the fall at the end. The path's length is s = (b/2) (theta (1 +
     theta^2)^(1/2) + arsinh theta); Newton's method computes theta to rounding error.
 
     >>> spiral = Spiral(radius=10e-6, pitch=1e-6, speed=1e-3)

@@ -15,9 +15,10 @@ from flexstage.control.trajectory.profile import Limits, profile
 
 @dataclass(frozen=True, eq=False)
 class Step(CheckedFields):
-    """Move `to` a pose (by coordinate [m, rad]) at `start` [s]: immediate, or within `limits` along the straight path.
+    """Move to the pose `to` (by coordinate [m, rad]) that starts at the time `start` [s]: a jump, or a straight path within `limits`.
 
-    The length of the path is the translation, or the angle of a pure rotation; all coordinates move in proportion.
+    All coordinates move in proportion. `limits` apply to the length of the path: the translation [m] or, for a pure rotation, the angle
+    [rad].
 
     >>> step = Step({"x": 3e-6, "y": 4e-6}, limits=Limits(speed=1e-3, acceleration=1.0, jerk=32.0))
     >>> step.at(np.array([0.0, 1.0])).round(15).tolist(), step.coordinates

@@ -25,7 +25,7 @@ else:  # slow import: all record formats
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Piecewise linear poses `values` (n, c) [m, rad] at increasing `times` (n,) [s]; constant before the first and after the last.
+    """Piecewise linear poses `values` (n, c) [m, rad] at increasing `times` (n,) [s]; constant before the first and after the last time.
 
     In findings, `source` names the origin of the table. Raises `DesignError` for times that do not increase, values that are not finite,
     and shapes that do not match.

@@ -112,7 +112,7 @@ class BandwidthTrial:
         return min(tried, key=lambda each: each.judgement.score, default=None)
 
     def reach(self, calm: float = 0.0) -> Attempt | None:
-        """Return the first attempt that meets frequency and specification, else None; faster than `best`, which ranks the failures."""
+        """Return the first attempt that meets frequency and specification, else None; unlike `best`, it does not rank failed attempts."""
         return next((found for found in self._attempts(calm) if found.reaches(self.frequency, self.spec)), None)
 
     def _attempts(self, calm: float) -> Iterator[Attempt]:

@@ -63,11 +63,11 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
 
     The variables are the control law of every loop, and the frequencies, widths and depths of its notches. A crossover beyond a mode is
     possible if margins hold for all mode shifts. The search first continues `known` tunings of a plant with fewer modes. If these tunings
-    give no result, the search starts from a grid around the modes; this start is omitted if the controller of highest bandwidth (`tune`)
-    has its crossover beyond the modes. If the controller of highest bandwidth is still better, the search also starts from this controller.
-    The result is at least as good for the objective (`merit`) as the controller of highest bandwidth, if that controller meets all
-    requirements. Stability is determined by eigenvalues. Robustness is determined by the peak sensitivity of all sampled loops together,
-    for mode shifts within the spread. Raises `DesignError` for an unstable open loop, and for contradictory or unmet requirements.
+    give no result, the search starts from a grid around the modes. The grid is omitted if the controller of highest bandwidth (`tune`) has
+    its crossover beyond the modes. If that controller is better than the result, the search also starts from that controller. The result
+    is at least as good for the objective (`merit`) as the controller of highest bandwidth, if that controller meets all requirements.
+    Stability is determined by eigenvalues. Robustness is determined by the peak sensitivity of all sampled loops together, for mode shifts
+    within the spread. Raises `DesignError` for an unstable open loop, and for contradictory or unmet requirements.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -169,7 +169,7 @@ def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
     if within.spec.prefilter and isinstance(controller, Decentralised):
         controller = replace(controller, prefilters=prefilters(within, known_loops(within, controller)))
     return _candidate(
-        within, controller, _judge(within, controller), note="; this is the controller of highest bandwidth: no better one was found"
+        within, controller, _judge(within, controller), note="; this is the controller of highest bandwidth: no better controller was found"
     )
 
 
@@ -202,7 +202,7 @@ def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
 
 
 def reduce_gains(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
-    """Multiply the gains of all rejected controllers by the largest factor that makes one acceptable; return the best of them."""
+    """Reduce the gains of all rejected controllers until at least one is acceptable; return the best acceptable controller."""
     distinct = {(each.laws, each.notches): each for each in rejected}.values()
     for factor in _FACTORS:
         slowed = [replace(each, laws=tuple(_scaled(law, factor) for law in each.laws)) for each in distinct]
@@ -254,7 +254,7 @@ def _tighter(spec: TuningSpec, shares: tuple[float, ...]) -> Iterator[TuningSpec
 def _none_found(spec: TuningSpec, refused: tuple[Finding, ...]) -> Finding:
     """Finding for a failed search, with the failure of the highest-bandwidth design before it."""
     wanted = [
-        *([] if spec.rejection is None else [f"rejects up to {spec.rejection:g} Hz"]),
+        *([] if spec.rejection is None else [f"rejects disturbances up to {spec.rejection:g} Hz"]),
         *([] if spec.settling is None else [f"settles within {1e3 * spec.settling:g} ms"]),
         *([f"has a delay margin of {1e3 * spec.delay_margin:g} ms"] if spec.delay_margin else []),
     ]
@@ -274,7 +274,7 @@ def _missed(within: Field, found: Outcome, far: float) -> Iterator[Finding]:
     if far > _UNMET and wanted:
         reached = ", ".join(f"{name} {each:.4g} Hz" for name, each in zip(within.seen.loops.names, found.rejection[0], strict=True))
         kept = f"{', '.join(wanted)} and an overshoot of at most {100.0 * spec.overshoot:g} % conflict"
-        what = f"{kept}: the nearest design violates these limits by {100.0 * far:.2g} %, with rejection up to {reached}"
+        what = f"{kept}: the nearest design violates these limits by {100.0 * far:.2g} %, with sensitivity crossover {reached}"
         yield Finding("controller.goal", what, "Relax one requirement, allow a higher peak of S, or sample faster")
 
 
@@ -335,7 +335,7 @@ def _controller(within: Field, found: SearchResult) -> Decentralised:
 
 
 def prefilters(within: Field, found: SearchResult) -> tuple[Prefilter, ...]:
-    """Select a prefilter per loop from a grid: least overshoot for all mode shifts (values up to 2 % are equal), then fastest settling."""
+    """Select a prefilter per loop from a grid: least overshoot for all mode shifts (up to 2 % counts as none), then fastest settling."""
     loops, chosen = one_loops(within, found), dict[int, Prefilter]()
     for loop, first in enumerate(within.alike):
         chosen[loop] = chosen[first] if first in chosen else _soonest(loops[loop])
@@ -364,7 +364,7 @@ def _settling(loop: OneLoop, tried: Prefilter) -> tuple[float, float]:
 def _sentence(within: Field, found: Outcome, judged: Judgement) -> str:
     spec = within.spec
     reached = ", ".join(f"{name} {value:.3g}" for name, value in zip(within.seen.loops.names, found.rejection[0], strict=True))
-    shifts = f" with mode shifts up to {100.0 * spec.spread:g} %; stable up to {100.0 * farthest(spec):g} %" if spec.spread else ""
+    shifts = f" with mode shifts up to {100.0 * spec.spread:g} %; stable with shifts to {100.0 * farthest(spec):g} %" if spec.spread else ""
     peak = f"the peak of S is {judged.peak:.3g}{shifts}"
     objective = "" if spec.objective is None else f" for {spec.objective.value}"
     return f"{spec.family.name} optimised{objective}: sensitivity crossover {reached} Hz; {peak}"

@@ -20,7 +20,7 @@ _COARSE = 8
 def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:
     """Evaluate stability by eigenvalues, the peak sensitivity over all frequencies of the view, and each loop's bandwidth.
 
-    `gains` are the `open_gains` if already known.
+    `gains` are the result of `open_gains`, if it is already known.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -57,8 +57,8 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
 def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
     """Compute laws of several dampings, feed-throughs and corners.
 
-    The tracking gain k solves |k/(j w) - Q| = 1/|g| at the crossover w [1/s]; Q is the response of the law's feedback of the pose, and g
-    that of the plant.
+    The tracking gain k solves |k/(j w) - Q| = 1/|g| at the crossover w [1/s]; Q is the response of the law's inner feedback, and g
+    the response of the plant.
     """
     found: list[IntegralResonant] = []
     turning = warped(place.frequency, step)
@@ -84,6 +84,6 @@ PID_FAMILY = Family("PID", pid_laws, others="LQG", steps=(1.14, 2.0))
 """A loop with phase lead may have its crossover between modes, in narrow ranges."""
 RESONANT_FAMILY = Family("integral resonant control", resonant_laws, notched=False, others="PI with notches, or LQG")
 LQG_FAMILY = Family("LQG", lambda _, __: (), others="less gauge noise", steps=(1.6, 4.0))
-"""Tuned by its weights, in coarser steps because of its cost."""
+"""LQG is tuned by its weights; the bandwidths tried are farther apart, because each design takes long."""
 FAMILIES: Mapping[str, Family] = MappingProxyType({"pi": PI_FAMILY, "pid": PID_FAMILY, "resonant": RESONANT_FAMILY, "lqg": LQG_FAMILY})
-"""Families by their names in set-up files; `CONTROLLERS` has the others."""
+"""Families by their names in set-up files; `CONTROLLERS` contains all other families."""

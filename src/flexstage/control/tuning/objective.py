@@ -9,13 +9,13 @@ SENSITIVITY = 2.0
 
 
 class TuningObjective(Enum):
-    """Objective of optimisation-based tuning, within the required margins."""
+    """Objective of optimisation-based tuning; the required margins are constraints."""
 
     BALANCE = "balance"
-    """Rejection and settling together, and low noise with the remaining freedom."""
+    """High sensitivity crossover and short settling time together, then low noise."""
     REJECTION = "rejection"
     """Highest sensitivity crossover."""
     NOISE = "noise"
-    """Lowest positioning noise by floor and gauges."""
+    """Lowest positioning noise due to floor and gauges."""
     SETTLING = "settling"
     """Shortest 2 % settling time of steps."""

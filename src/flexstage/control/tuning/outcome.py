@@ -22,7 +22,7 @@ class Outcome:
 
     `rejection` (2, k) [Hz] contains the sensitivity crossover of the model, then the lowest crossover for mode shifts within the spread.
     `noise` [m] is the rms noise in regulation, `floor` [m] the contribution of the floor. `settling` [s] (2 %) and `overshoot` are the
-    largest for mode shifts within the spread; `delay_margin` [s] belongs to the model.
+    largest values for mode shifts within the spread; `delay_margin` [s] is that of the model.
     """
 
     peaks: Array

@@ -204,9 +204,9 @@ def farthest(spec: TuningSpec) -> float:
 class Field:
     """Search data: the responses of plants from the commands of k loops to their poses.
 
-    `plants` (v, f, k, k) are the responses of the v variants. Each variant has its own f `frequencies` (v, f) [Hz]: the model's, multiplied
-    by (1 + offset), so that the modes are at the same indices. `slow` (w, h, k, k) are responses at the evenly spaced frequencies `lines`
-    (h,) [Hz], for step responses. They belong to the w variants that have only mode shifts within the spread.
+    `plants` (v, f, k, k) are the responses of the v variants. Each variant has its own f `frequencies` (v, f) [Hz]: those of the model,
+    multiplied by (1 + offset), so that the modes are at the same indices. `slow` (w, h, k, k) are responses at the evenly spaced
+    frequencies `lines` (h,) [Hz], for step responses. They belong to the w variants that have only mode shifts within the spread.
 
     `disturbed` (f, k, d) are the amplitudes of the loops' poses due to d floor motions, `heard` (f, k) the amplitudes due to gauge noise.
     Both are multiplied by the square root of the frequency spacing, so that a sum of their squares over the frequencies is a mean square.
@@ -339,7 +339,7 @@ def _heard(seen: View) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """Search result: each loop's shape, its parameter point, and the frequency `reached` [Hz] for the objective (0 without an objective).
+    """Search result: each loop's shape, its parameter point, and the target frequency [Hz] that it `reached` (0: no target).
 
     `noises` are the rms errors of the loops in regulation, if known, with the loops of other groups open.
     """
@@ -557,9 +557,10 @@ def _far(within: Field, found: SearchResult) -> float:
 
 
 def raise_targets(within: Field, starts: list[SearchResult], targets: list[float]) -> SearchResult:
-    """Increase the frequency targets from the first start that meets them: of all loops, then of single loops, by decreasing ratios.
+    """Increase the frequency targets of all loops, then of single loops, by decreasing ratios.
 
-    A target of zero is first replaced by the frequency that this start reaches.
+    The search begins with the first of `starts` that meets the `targets`. A target of zero is first replaced by the frequency that this
+    start reaches.
     """
     within, best = loud_enough(within, starts, targets)
     for _ in range(_LEVELS - 1):
@@ -584,7 +585,7 @@ def raise_targets(within: Field, starts: list[SearchResult], targets: list[float
 
 
 def loud_enough(within: Field, starts: list[SearchResult], wanted: list[float]) -> tuple[Field, SearchResult | None]:
-    """Fit the starts in turn until a result meets the frequency targets; return a field and this result.
+    """Fit the starts in turn until a result meets the frequency targets; return the field used and this result.
 
     If only the noise limit prevents a result, the returned field has a higher limit.
 

@@ -23,17 +23,18 @@ class TuningSpec(CheckedFields):
     """Tuning specification: `family` of the controller, requirements, disturbances and references.
 
     Without an `objective`, every loop has its gain crossover at `bandwidth` [Hz] (default: the highest possible) and contains the specified
-    `notches`. If `automatic`, more notches at modes are added. With an objective, the controller is optimised: every loop must reach
-    `rejection` [Hz] and `settling` [s] (2 %; default: as good as possible). `overshoot` is the largest permitted overshoot of a step
-    response, `delay_margin` [s] the smallest permitted delay margin of a loop. With `prefilter`, prefilters shape the references.
+    `notches`. If `automatic`, further notches are placed on modes. With an objective, the controller is optimised. For every loop,
+    `rejection` [Hz] is then the lowest permitted sensitivity crossover, and `settling` [s] is the longest permitted 2 % settling time
+    (default of both: no limit). `overshoot` is the largest permitted overshoot of a step response. `delay_margin` [s] is the smallest
+    permitted delay margin of a loop. With `prefilter`, prefilters shape the references.
 
-    `sensitivity` is the highest permitted peak of the sensitivity, for a pose with rotations converted to lengths. A peak of 2 (6 dB)
-    implies gain margins of 2 and phase margins of 29 deg (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, equation 2.47).
-    Stability and peak must hold for relative shifts of all modes within +-`spread`. With an objective, stability and peak must also hold
-    for relative errors of all gains within +-`gain`.
+    `sensitivity` is the highest permitted peak of the sensitivity; for this peak, rotations are multiplied by the stage's length. A peak of
+    2 (6 dB) implies gain margins of 2 and phase margins of 29 deg (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005,
+    equation 2.47). Stability and peak must hold for relative shifts of all modes within +-`spread`. With an objective, stability and peak
+    must also hold for relative errors of all gains within +-`gain`.
 
-    `expected` are the disturbances that an observer assumes. `floor` are the spectra of floor motion by input. The matrix `feedforward` (n,
-    f) multiplies the reference of f coordinates; the result is n feedforward strokes.
+    `expected` are the disturbances that an observer assumes. `floor` contains the spectra of the floor motions. The matrix `feedforward`
+    (n, f) multiplies the reference of f coordinates; the result is n feedforward strokes.
     """
 
     family: Family
@@ -69,7 +70,7 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
         what = f"{spec.bandwidth:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
         yield Finding("bandwidth", what, f"Sample above {10.0 * spec.bandwidth:g} Hz, or use a lower bandwidth")
     if not 1.0 < spec.sensitivity < np.inf:
-        advice = "Use a larger value, e.g. 2 (6 dB): a loop with delay always exceeds 1"
+        advice = "Use a larger value, e.g. 2 (6 dB): with delay, the peak of S always exceeds 1"
         yield Finding("sensitivity", f"the limit of the peak of S must be above 1 (got {spec.sensitivity:g})", advice)
     if not 0.0 <= spec.spread < 0.5:
         yield Finding("spread", f"the relative spread of the modes must be at least 0 and below 0.5 (got {spec.spread:g})", "Use e.g. 0.02")
@@ -93,7 +94,7 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
 
 @dataclass(frozen=True)
 class Judgement:
-    """Evaluation: `bandwidths` [Hz] by loop, `peak` sensitivity, its `frequency` [Hz], and rate `growth` [1/s] of the fastest growth.
+    """Evaluation: `bandwidths` [Hz] by loop, `peak` sensitivity, its `frequency` [Hz], and the largest growth rate `growth` [1/s].
 
     The bandwidths belong to the nominal plant; `peak` and `growth` are the largest over the mode spread. `offset` is the mode shift with
     the highest peak or, in an unstable loop, with the largest growth; `frequency` belongs to this shift.

@@ -33,11 +33,11 @@ def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     """Tune a controller to a specification without objective, evaluated on all sampled loops together.
 
     Every loop has a gain of 1 at the required bandwidth. By default, the tuner tries bandwidths from fast to slow and refines the highest
-    one by bisection. The controller of the family with the lowest peak of the sensitivity is selected, first without additional notches,
-    then with them. All loops together must be stable and have a peak below the limit, also for all mode shifts within the spread. Finally,
-    PI and PID get the strongest integrators that keep the peak within the limit (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998)
-    585). LQG is tuned by its weights, in platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the
-    highest bandwidth found, and a remedy.
+    one by bisection. Within the family, the controller with the lowest peak of the sensitivity is selected: first without additional
+    notches and, if that fails, with them. All loops together must be stable and have a peak below the limit, also for all mode shifts
+    within the spread. Finally, PI and PID get the strongest integrators that keep the peak within the limit (Astrom, Panagopoulos &
+    Hagglund, Automatica 34 (1998) 585). LQG is tuned by its weights, in platform coordinates. Raises `DesignError` for an unreachable
+    bandwidth, with the reason, the highest bandwidth found, and a remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -79,7 +79,7 @@ def _weakest(found: Attempt) -> float:
 
 
 def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
-    """List bandwidths [Hz] to try, descending: from the limit by hold and delay to the limit by roll-off and resonances.
+    """List bandwidths [Hz] to try, in descending order: from the limit due to hold and delay to that due to resonances.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -137,7 +137,7 @@ def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
     if spec.family != LQG_FAMILY:
         yield from notch_findings(spec.notches, plant.frequencies)
     elif spec.notches:
-        yield Finding("notches", f"got {len(spec.notches)} for LQG, whose observer models the modes", "Omit the notches")
+        yield Finding("notches", f"LQG models the modes in its observer, without notches (got {len(spec.notches)})", "Omit the notches")
     if spec.family == LQG_FAMILY and spec.expected is None:
         yield Finding("LQG", "the observer's noise is missing", "Specify the noise of gauges and strokes")
 

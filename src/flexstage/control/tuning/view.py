@@ -34,7 +34,7 @@ _STANDS_OUT = 2.0
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
+    """Plants from commands to pose: the nominal plant first, then plants with all modes shifted by `offsets`.
 
     `responses` (v, f, k, n) are the frequency responses from n strokes to the poses of k loops at `frequencies` (f,) [Hz]. They are
     computed only for the first v offsets, which are within the spread. `modes` [Hz] and `ratios` are the frequencies and damping ratios of
@@ -152,7 +152,7 @@ def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
 
 @dataclass(frozen=True)
 class Resonance:
-    """Significant mode of a loop: its `frequency` [Hz], damping `ratio`, and the loop's `gain` there."""
+    """Significant mode of a loop: its `frequency` [Hz], damping `ratio`, and the `gain` from command to pose at this frequency."""
 
     frequency: float
     ratio: float

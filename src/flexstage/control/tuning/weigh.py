@@ -68,7 +68,7 @@ class RegulatorSpace:
     def outcome(self, point: Array) -> Outcome | None:
         """Evaluate a point. Returns `None` if the point gives no controller, or the loop is unstable at the largest mode shifts.
 
-        The nominal loop is always stable, because regulator and observer are.
+        The nominal loop is always stable, because regulator and observer are stable.
         """
         seen = self.within.seen
         ends = {min(seen.offsets), max(seen.offsets)}

@@ -34,10 +34,10 @@ def compare(
 ) -> CommandResult:
     """Compare theory, FEA and experiment.
 
-    Modes are paired by their shapes at the sensors; repeated modes are paired as a subspace. Outputs must have
-    the names of gauges or motions of the stage.
+    Modes are paired by their shapes at the sensors; repeated modes are paired as a subspace. Output
+    channels must have the names of gauges or motions of the stage.
 
-    FEA results are included if they are in the cache, or with --fea.
+    FEA results are included if the cache contains them; with --fea, missing FEA results are computed.
     """
     linear = elastic_model(mechanism, model, loaded=True)
     highest = platform_modes(mechanism, linear).highest

@@ -35,13 +35,15 @@ Records: TypeAlias = Annotated[
 def identify(
     records: Records,
     *,
-    stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Design file of the stage to which mode shapes are mapped.")] = None,
+    stage: Annotated[
+        Path | None, text_option("--stage", "STAGE.TOML", "Design file of the tested stage, to convert mode shapes to its motions.")
+    ] = None,
     texts: RecordTexts,
     excitation: Moved = None,
 ) -> CommandResult:
     """Find the modes in records of a test.
 
-    Prints frequencies and damping with 95 % intervals, and shapes. The identification is automatic.
+    Prints frequencies and damping with 95 % confidence intervals, and mode shapes. The identification is automatic.
 
     The command refuses a record with faulty channels, unless you accept the fault with --accept-fault.
     """

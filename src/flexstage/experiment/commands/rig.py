@@ -45,7 +45,9 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     output: Annotated[Path, output_option("RECORD", "File to write: .uff, .mat, .h5 or .csv.")],
     seconds: Annotated[float, text_option("--seconds", "NUMBER", "Duration in seconds.")],
     seed: Seed = None,
-    rate: Annotated[str | None, rate_option("the lowest power of two that is at least ten times the highest platform mode")] = None,
+    rate: Annotated[
+        str | None, rate_option("the lowest power of two that is at least ten times the frequency of the highest platform mode")
+    ] = None,
     drive_rms: Annotated[
         str | None,
         text_option("--drive-rms", "VALUE", "Rms of the noise drive, e.g. 1um, 5V, 0.1A or 1N. Default: 1 % of each actuator's range."),
@@ -64,7 +66,11 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     ] = "0 nm",
     input_signal: Annotated[
         InputSignal,
-        word_option("--input-signal", InputSignal, "Recorded input signal: filtered output of the amplifier, or its unfiltered input."),
+        word_option(
+            "--input-signal",
+            InputSignal,
+            "Recorded input signal: monitor (amplifier output, filtered) or command (amplifier input, unfiltered).",
+        ),
     ] = InputSignal.MONITOR,
     delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="Delay of the recorded gauge readings, e.g. 1ms.")] = "0 s",
     input_quantity: Annotated[
@@ -79,12 +85,12 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     changes: Changes = None,
     elastic_bodies: ElasticBodies = False,
 ) -> None:
-    """Test a stage on a virtual rig; write the record.
+    """Simulate a test of a stage, and write the record.
 
-    Simulates the test: noise drives the actuators through amplifiers; the gauges of the stage have noise, drift and quantisation; their
+    On the virtual rig, noise drives the actuators through amplifiers. The gauges of the stage have noise, drift and quantisation. Their
     readings are filtered and sampled.
 
-    The same seed gives the same file.
+    Two runs with the same seed write identical files.
     """
     mechanism = with_elastic_bodies(open_design(design, changes, [("--output", output)]), chosen=elastic_bodies)
     values = Values()
@@ -122,7 +128,7 @@ def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, 
         )
     )
     if drive_rms is not None and amount is None:
-        what = f'no displacement, voltage, current, force or torque (got "{drive_rms}")'
+        what = f'not a displacement, voltage, current, force or torque (got "{drive_rms}")'
         values.findings.append(Finding("--drive-rms", what, 'Use e.g. "1 um", "5 V" or "0.1 A"'))
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(

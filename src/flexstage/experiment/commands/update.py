@@ -53,16 +53,17 @@ def update(  # noqa: PLR0913 (its options)
         typer.Option(
             "--gain-error",
             metavar="SHARE",
-            help="Standard deviation of static gains with scale errors of gauges and drives, relative to each actuator's largest gain.",
+            help="Standard deviation of static gains due to scale errors of gauges and drives, relative to each actuator's largest gain.",
         ),
     ] = "0.1 %",
     texts: RecordTexts,
 ) -> CommandResult:
     """Update parameters of a stage from a test.
 
-    Uses Bayesian least squares. Prints values, standard deviations, correlations and identifiable combinations.
+    Uses Bayesian least squares. Prints values, standard deviations, correlations and the combinations of parameters that the test
+    identifies.
 
-    Writes a new design file with all comments, in which updated values have a tag.
+    Writes a new design file. Comments are kept, and a tag states the source of each updated value.
     """
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)
@@ -95,5 +96,5 @@ def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bo
 def _share(option: str, text: str) -> float:
     value = parse(text, RATIO, where=option)
     if not 1e-6 <= value <= 1.0:
-        raise refuse(option, f"no relative standard deviation (got {text.strip()})", 'Use 0.0001 % to 100 %, e.g. "5 %"')
+        raise refuse(option, f"not a valid relative standard deviation (got {text.strip()})", 'Use 0.0001 % to 100 %, e.g. "5 %"')
     return value

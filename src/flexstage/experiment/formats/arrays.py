@@ -86,7 +86,8 @@ def held_array(name: str, values: Array) -> Variable:
 class Contents:
     """Contents of a file: the arrays `variables`, and `said`, which maps names to strings, lists or numbers.
 
-    Messages call the file `where`. `objects` maps names to classes of objects that only the program that wrote the file can read.
+    `where` is the name of the file in messages. `objects` maps names to classes of objects that only the program that wrote the file can
+    read.
     """
 
     where: str
@@ -117,7 +118,7 @@ class Contents:
         return next((value for name in names if isinstance(value := self.said.get(name), float)), None)
 
     def scale(self, variable: Variable, units: Mapping[str, float]) -> float:
-        """Return the factor of a variable's unit, which must be one of `units`; 1 without a unit."""
+        """Return the factor of a variable's unit, which must be one of `units`; 1 if the variable has no unit."""
         unit = plain_unit(" ".join(_texts(variable.attributes.get("units", ""))))
         if unit and unit not in units:
             what = f'wrong unit (got "{unit}", expected {" or ".join(units)})'
@@ -190,7 +191,7 @@ def read_arrays(contents: Contents, options: Options) -> tuple[Record | Response
     """
     require(_unknown_names(contents, options.arrays))
     samples, responses = contents.find(options.arrays.samples), contents.find(options.arrays.responses)
-    found: list[Record | Responses] = []
+    found = list[Record | Responses]()
     if samples and options.kind is not Kind.RESPONSES:
         found.append(_record(contents, samples, options))
     if responses and options.kind is not Kind.RECORD:
@@ -249,7 +250,9 @@ def list_arrays(contents: Contents) -> str:
 def _require_real(contents: Contents, chosen: Iterable[Variable]) -> None:
     advice = "Name real arrays with one or two axes"
     require(
-        Finding(f"{contents.where}: {each.name}", f"no samples (got {'complex' if each.is_complex else f'shape {each.shape}'})", advice)
+        Finding(
+            f"{contents.where}: {each.name}", f"unusable as samples (got {'complex' if each.is_complex else f'shape {each.shape}'})", advice
+        )
         for each in chosen
         if each.is_complex or not 1 <= len(each.shape) <= 2 or 0 in each.shape
     )
@@ -275,7 +278,7 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
     )
     if time is None and stated is None:
         advice = 'Assign the time: "time=...", "rate=..." or "step=..." (option array), or specify the rate (option rate)'
-        raise refuse(contents.where, f"no times and no rate. {list_arrays(contents)}", advice)
+        raise refuse(contents.where, f"times and rate are missing. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
     times = time.samples(int(np.argmax(time.shape)))
@@ -332,7 +335,9 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     """Responses; each of several arrays contains outputs for the same inputs."""
     lines = contents.vector(options.arrays.frequencies)
     if lines is None:
-        raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign the frequencies (option array "frequencies=...")')
+        raise refuse(
+            contents.where, f"frequencies are missing. {list_arrays(contents)}", 'Assign the frequencies (option array "frequencies=...")'
+        )
     frequencies = lines.whole().ravel() * contents.scale(lines, _HERTZ)
     problem = rising_problem(frequencies)
     if problem is not None:
@@ -367,7 +372,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
 def _no_responses(where: str, chosen: Iterable[Variable], size: int) -> Iterator[Finding]:
     for each in chosen:
         if not each.is_complex or size not in each.shape:
-            what = f"no responses at {size} frequencies (got {'complex' if each.is_complex else 'real'} of shape {each.shape})"
+            what = f"unusable as responses at {size} frequencies (got {'complex' if each.is_complex else 'real'} array, shape {each.shape})"
             yield Finding(f"{where}: {each.name}", what, "Name complex arrays (frequencies, outputs, inputs)")
 
 

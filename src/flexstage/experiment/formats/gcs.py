@@ -35,9 +35,9 @@ def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
     The header (`# KEY = value` up to `# END_HEADER`) follows PI's general command set, as read by PI's library (PIPython, `getgcsheader`).
     SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. The header has no units: the user
-    specifies them. Commanded and control values are inputs, positions and sensors are outputs. Columns of other quantities are classified
-    by their names. Raises `DesignError` for a header without sampling time (if no rate is specified) and for a header that contradicts its
-    columns. A truncated file is accepted only with `FaultTolerance.TRUNCATED`.
+    specifies them. Columns of commanded and control values are inputs; columns of positions and sensors are outputs. Other columns are
+    classified by their names. Raises `DesignError` for a header without sampling time (if no rate is specified) and for a header that names
+    more columns than DIM. A truncated file is accepted only with `FaultTolerance.TRUNCATED`.
 
     >>> import tempfile
     >>> head = "# SEPARATOR = 32\n# DIM = 2\n# SAMPLE_TIME = 0.5\n# NDATA = 2\n# NAME0 = Target Position of axis 1\n"
@@ -99,7 +99,7 @@ def _rate(path: Path, said: Mapping[str, str]) -> float:
     if 0.0 < step < float("inf"):
         return 1.0 / step
     found = f'got "{text}"' if text else "missing"
-    raise refuse(f"{path}: SAMPLE_TIME", f"no time between lines in the header ({found})", "Specify the rate (option rate)")
+    raise refuse(f"{path}: SAMPLE_TIME", f"the header has no valid time step ({found})", "Specify the rate (option rate)")
 
 
 def _role(name: str) -> Role:

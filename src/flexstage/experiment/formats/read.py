@@ -31,9 +31,9 @@ _OTHERS = {
 def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | Responses:
     """Read a test file: UFF58 in ASCII or binary, MAT (v4, v5, v7.3), HDF5, CSV, GCS arrays, or a format of another package.
 
-    The format is recognised from the content. Samples stay in the file if its format allows (binary and regular ASCII UFF, MAT v7.3, HDF5,
-    CSV). Samples are read in blocks on demand. Units and numbers are those in the file. Raises `DesignError` with all errors. For a file
-    with both record and responses, `options.kind` is required.
+    The format is recognised from the content. Samples stay in the file and are read in blocks on demand, if the format allows it (binary
+    UFF, MAT v7.3, HDF5, CSV, GCS). Units and numbers are those in the file. Raises `DesignError` with all errors. If the file contains both
+    a record and responses, `options.kind` is required.
 
     >>> import tempfile
     >>> import numpy as np
@@ -90,4 +90,4 @@ def _format(path: Path, start: bytes) -> Format:
 
 
 read_record = read
-"""`read` under its name in `flexstage`."""
+"""The function `read`, as named in the package `flexstage`."""

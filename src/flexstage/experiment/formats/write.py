@@ -13,7 +13,7 @@ from flexstage.experiment.records.record import Record, Responses
 
 @check_arguments
 def write(path: str | os.PathLike[str], what: Record | Responses, form: str = "") -> None:
-    """Write a record or responses completely or not at all, in the named format or in the format of the file's ending.
+    """Write a record or responses, completely or not at all, in the format `form` (default: the format for the ending of the file name).
 
     Formats are `uff` (binary), `mat` (version 5), `hdf5`, `csv`, and those of other packages. Raises `DesignError` for unknown names and
     endings, for channel names or units that the format does not support, and if the file cannot be written.
@@ -39,4 +39,4 @@ def write(path: str | os.PathLike[str], what: Record | Responses, form: str = ""
 
 
 write_record = write
-"""`write` under its name in `flexstage`."""
+"""The function `write`, as named in the package `flexstage`."""

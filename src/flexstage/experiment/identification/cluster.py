@@ -51,10 +51,10 @@ class _Track:
 def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
     """Build the diagram of poles of increasing order, and the candidates: poles found at two fifths of the orders or more.
 
-    A track is one pole followed from order to order. A pole continues the nearest track of the orders below, by distance in the complex
-    plane and by participation. A track contains at most one pole of each order, so that two close modes remain two tracks. Participations
-    of repeated poles are arbitrary vectors of a common plane and differ between orders. If possible, all candidates are therefore taken
-    from the same order.
+    A track is one pole followed from order to order. A pole continues the track of lower orders that is most similar in pole and
+    participation together. A track contains at most one pole of each order, so that two close modes remain two tracks. Participations of
+    repeated poles are arbitrary vectors of a common plane and differ between orders. If possible, all candidates are therefore taken from
+    the same order.
 
     >>> one = [Poles(order, np.array([-0.1 + 10j]), np.ones((1, 1))) for order in range(1, 6)]
     >>> diagram, candidates = stabilisation(tuple(one), 0.1)

@@ -43,9 +43,9 @@ class Deviations:
 def misfits(band: Band, modal: Modal) -> Array:
     """Compute the rms residual of the fit near each mode (k,), divided by the rms noise of the band; 1 if the residual is not significant.
 
-    With noise only, the residual has the level of the noise everywhere, after correction for the degrees of freedom that the mode uses.
-    Outputs whose noise is coherent count as one output. A residual is significant if noise causes it with a probability below 1/1000: the
-    mode is then nonlinear, not viscously damped, or not isolated. Two neighbourhoods of a mode are tested: frequencies within 1.5 and
+    If the residual contains only noise, its level equals the noise everywhere, after correction for the degrees of freedom that the mode
+    uses. Outputs whose noise is coherent count as one output. A residual is significant if noise causes it with a probability below 1/1000:
+    the mode is then nonlinear, not viscously damped, or not isolated. Two neighbourhoods of a mode are tested: frequencies within 1.5 and
     within 4 half-widths. If a mode varies during the test or its excitation was not recorded, the residual is largest within 1.5
     half-widths.
 

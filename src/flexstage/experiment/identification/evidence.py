@@ -73,7 +73,7 @@ class Evidence:
         return np.interp(frequencies, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines))
 
     def shape(self, cells: Cells) -> Array:
-        """Return the relative noise variance (p, c) of every output in each cell: from stored coherence; without coherence, 1."""
+        """Return the relative noise variance (p, c) of every output in each cell, from stored coherence or `noise_growth`; otherwise 1."""
         return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
 
     def variance(self, low: float, high: float) -> Array:
@@ -228,7 +228,7 @@ def _is_swept_once(record: Record, segments: Segments) -> bool:
 
 
 def whole_segment(records: Sequence[Record]) -> Segments:
-    """Return one segment without a window, as long as the shortest record, for an impact or a burst.
+    """Return one segment without a window, as long as the shortest record (at most 2^15 samples), for an impact or a burst.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> whole_segment([one_mode_record(seconds=48.0)]).seconds

@@ -68,11 +68,11 @@ class Identified(InNotebook):
     shape, participation and pole. Standard deviations of shapes apply to the real and to the imaginary part. `widening` (k,) is the
     inflation factor of all standard deviations, above 1 if the residual near the mode exceeds noise or may contain a further mode.
     `significance` (k,) is the mode's chi-squared statistic, divided by the level that noise exceeds with a probability of 1e-9. `close`
-    lists groups of modes closer than their half-widths: only the subspace of such a group can be compared, not its single modes. `noise`
-    (p,) is the noise density of the outputs, in the output's unit squared per Hz; with floor excitation, it is their whole density. For an
-    analyser's responses and for free decays, it is unknown (NaN). `data_warnings` lists limits of the data. `peaks` are peaks not confirmed
-    as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, this H is multiplied by e^{-j
-    w delay}.
+    lists groups of modes closer than their half-widths: only the subspace of a group can be compared, not the single modes. `noise` (p,) is
+    the noise density of the outputs, in the output's unit squared per Hz; with floor excitation, `noise` is the whole density of the
+    outputs. For an analyser's responses and for free decays, `noise` is unknown (NaN). `data_warnings` lists limits of the data. `peaks`
+    are peaks not confirmed as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, the
+    response H above is multiplied by e^{-j w delay}.
     """
 
     frequencies: Array
@@ -131,7 +131,7 @@ class Identified(InNotebook):
             if self.delay
             else []
         )
-        return (*close, f"Modes were searched {band}", *delay)
+        return (*close, f"Modes were searched for {band}", *delay)
 
     @property
     def close_modes(self) -> Annotated[tuple[tuple[int, ...], ...], VIEW]:
@@ -164,7 +164,7 @@ class Identified(InNotebook):
 
     @property
     def complexity(self) -> Array:
-        """Complexity (k,) of each shape: 1 - |sum phi^2| / sum |phi|^2, zero for a real mode, 1 for a travelling wave."""
+        """Complexity (k,) of each shape phi: 1 - |sum(phi^2)|/sum(|phi|^2), which is 0 for a real mode, 1 for a travelling wave."""
         return 1.0 - np.abs(np.sum(self.shapes**2, axis=0)) / np.sum(np.abs(self.shapes) ** 2, axis=0)
 
     def response(self, frequencies: Array) -> Responses:

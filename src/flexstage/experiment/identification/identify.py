@@ -40,8 +40,9 @@ _LEAST_PARTS, _MOST_PARTS = 3, 8
 class Search(CheckedFields):
     """Search parameters: frequencies in `band` (Hz; default: the whole range of the record), damping ratios up to `highest_damping`.
 
-    `segments` defines the segments of the spectra for candidate modes (default: chosen by the record's length). `excitation` is the type of
-    excitation of the stage; without recorded inputs, `identification` identifies modes from outputs only.
+    `segments` defines the segments of the spectra in which candidate modes are sought (default: chosen from the record's length).
+    `excitation` is the type of excitation of the stage; if the excitation is not recorded, the function `identification` uses the outputs
+    only.
     """
 
     band: tuple[float, float] | None = None
@@ -54,22 +55,22 @@ class Search(CheckedFields):
 def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), known: Sequence[Spectra] = ()) -> Identified:
     """Identify natural frequencies, damping, shapes and participations, with 95 % intervals and significance.
 
-    `what` is a record, several records of one stage (for example six with one driven actuator each), or an analyser's responses. `known`
-    are the spectra of all records, which are then not computed again. Tones absent from the inputs are removed from the outputs.
+    `what` is a record, several records of one stage (for example six with one driven actuator each), or an analyser's responses. If `known`
+    contains the spectra of all records, they are not computed again. Tones absent from the inputs are removed from the outputs.
 
     Candidates are the stable poles that the pLSCF method finds in the H1 estimate of the responses. Each group of close candidates is then
     fitted by maximum likelihood to the transform of the whole record. The fit includes the transient and needs no window, so that it has no
     leakage. Inputs are assumed to be exact. The noise density of outputs must vary slowly with frequency. Intervals are also valid for
     noise correlated between outputs (Pintelon & Schoukens 2012, ch. 9 and 10).
 
-    Intervals of a mode are inflated if the residual near it exceeds noise (probability 1/1000). The inflation factor is proportional to the
-    residual, or to the scatter between independent parts of the data (`jackknife`) if this is larger. Independent parts are sub-bands,
-    inputs, records and time intervals.
+    The intervals of a mode are inflated if its residual is significant: noise alone would cause the residual near the mode with a
+    probability below 1/1000. The inflation factor is proportional to the residual or to the scatter between independent parts of the data
+    (`jackknife`), whichever is larger. Independent parts are sub-bands, inputs, records and time intervals.
 
-    A mode must be significant: noise reaches its chi-squared statistic with a probability of at most 1e-9. The required chi-squared is
-    three times higher if the standard deviation of the damping exceeds a third of the damping. The recorded inputs must also excite the
-    mode (F-test with a false-alarm rate of 1e-9). If the inputs leave more than 2 % of a mode's motion unexplained, a force was not
-    recorded, and all modes are fitted together.
+    A mode must be significant: the probability that noise alone reaches the mode's chi-squared statistic is at most 1e-9. The required
+    chi-squared is three times higher if the standard deviation of the damping exceeds a third of the damping. The recorded inputs must also
+    excite the mode (F-test with a false-alarm rate of 1e-9). If the inputs leave more than 2 % of a mode's motion unexplained, an
+    unrecorded force is assumed, and all modes are fitted together.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> found = identify(one_mode_record())

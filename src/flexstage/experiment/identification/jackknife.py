@@ -1,4 +1,4 @@
-"""Jackknife standard deviations of modes, from omission of parts of the data; they are valid even if the model is not."""
+"""Jackknife standard deviations of modes, from omission of parts of the data; they are valid even if the model is wrong."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min":
 
 
 def round_nominal(value: float, uncertainty: float) -> float:
-    """Within the uncertainty of a value, find the number with the fewest digits, counted in the number or in its inverse.
+    """Round a value within its uncertainty to the number that has the fewest digits, or whose inverse has the fewest digits.
 
     `uncertainty` is the relative uncertainty of the value.
 
@@ -54,7 +54,7 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """Sampling clock: rate [Hz], first time [s], and intervals without gaps, by sample numbers (start, stop) and start times [s]."""
+    """Sampling clock: rate [Hz], time of the first sample [s], intervals without gaps: sample numbers (start, stop), start times [s]."""
 
     rate: float
     start: float
@@ -89,7 +89,7 @@ def read_clock(times: Array, where: str) -> Clock:
 
 
 def determine_clock(samples: Samples, options: Options, where: str, *, scale: float = 1.0, stated: float | None = None) -> Clock:
-    """Determine the sampling clock from the first column of samples, the times in units of `scale` [s].
+    """Determine the sampling clock from the first column of samples, which contains the times in units of `scale` [s].
 
     A rate `stated` in the file [Hz] replaces the rate that follows from the times; both rates must agree within a thousandth. Raises
     `DesignError` for faulty times.
@@ -109,7 +109,7 @@ def determine_clock(samples: Samples, options: Options, where: str, *, scale: fl
     if stated is not None and abs(stated / clock.rate - 1.0) > 1e-3:
         raise refuse(
             where,
-            f"contradictory rates: {clock.rate:g} Hz in its times, {stated:g} Hz in the file",
+            f"contradictory rates: {clock.rate:g} Hz from the times, {stated:g} Hz stated in the file",
             "Specify the correct rate (option rate)",
         )
     return replace(clock, rate=stated or clock.rate)
@@ -159,5 +159,5 @@ def _problems(times: Array, typical: float, jumps: int, where: str) -> Iterator[
     elif not RATES[0] <= 1.0 / typical <= RATES[1]:
         yield Finding(where, f"invalid median time step (got {typical:.4g} s)", "Write times in s, or specify the rate")
     elif jumps > max(2, 0.01 * count):
-        what = f"its samples are not evenly spaced: {jumps} of {count} steps differ by more than half from the median, {typical:.4g} s"
+        what = f"its samples are not evenly spaced: {jumps} of {count} steps differ by more than 50 % from the median, {typical:.4g} s"
         yield Finding(where, what, "Resample the record evenly, or specify the rate if only the times are wrong")

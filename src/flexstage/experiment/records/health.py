@@ -38,10 +38,10 @@ _UNWINDOWED = (
 
 @dataclass(frozen=True)
 class RecordRequirements(CheckedFields):
-    """Requirements on a record: frequency `resolution` [Hz] with a number of `averages`, and frequency of the `highest` mode [Hz].
+    """Requirements on a record: frequency `resolution` [Hz], number of `averages` at this resolution, frequency of the `highest` mode [Hz].
 
-    `inputs` and `outputs` are the channels of the stage as pairs (name, unit). With `unrecorded`, the excitation was not recorded, and the
-    record must have no inputs.
+    `inputs` and `outputs` are the channels of the stage as pairs (name, unit). If `unrecorded` is true, the excitation was not recorded,
+    and the record must have no inputs.
     """
 
     resolution: float | None = None
@@ -54,7 +54,7 @@ class RecordRequirements(CheckedFields):
 
 @dataclass(frozen=True)
 class Fault:
-    """Fault of a record: its `kind`, the tolerance that accepts it (`None`: always an error), the channel, and the message."""
+    """Fault of a record: the tolerance that accepts it (`kind`; `None`: always an error), its `channel`, and its message `finding`."""
 
     kind: FaultTolerance | None
     channel: str
@@ -170,7 +170,7 @@ def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
     if outside:
         low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
         what = f"its coherence ranges from {low:g} to {high:g}: {outside} of {coherence.size} values are outside 0 to 1"
-        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check the export, or accept "clipped" to limit it to 0 to 1')
+        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check the export, or accept "clipped" to limit the coherence to 0 to 1')
 
 
 def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
@@ -275,7 +275,7 @@ def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fau
             return
         name = names[alive.pop(worst)]
         what = f"{100.0 * shares[worst]:.3g} % of its power is explained by the other inputs, {', '.join(names[k] for k in alive)}"
-        advice = 'Drive the inputs with independent noise, or accept "dependent" to omit this input; the others then explain its effect'
+        advice = 'Drive the inputs with independent noise, or accept "dependent" to omit this input: the other inputs explain its effect'
         yield _fault(FaultTolerance.DEPENDENT, where, name, what, advice)
 
 
@@ -288,10 +288,10 @@ def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
 def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
-            advice = 'Specify it (options inputs, outputs), or accept "names" to omit the channel'
+            advice = 'Specify it (options inputs, outputs), or accept the fault "names", which omits the channel'
             yield _fault(FaultTolerance.NAMES, where, channel.name, "its role is unknown", advice)
     if requirements.unrecorded and record.inputs:
-        what = f"inputs in a record of unrecorded excitation: {', '.join(each.name for each in record.inputs)}"
+        what = f"the excitation is unrecorded, but the record has inputs: {', '.join(each.name for each in record.inputs)}"
         yield _fault(None, where, "", what, "Select only outputs (option channels), or omit the excitation")
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
         if not channels and not (requirements.unrecorded and kind == "input"):
@@ -309,7 +309,7 @@ def _name_faults(
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
             if channel.name not in known:
-                advice = f'{suggest_nearest(channel.name, known)}; rename the channel, or accept "names" to omit it'
+                advice = f'{suggest_nearest(channel.name, known)}; rename the channel, or accept the fault "names", which omits it'
                 yield _fault(FaultTolerance.NAMES, where, channel.name, f"unknown {kind}", advice)
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"wrong unit (got {channel.unit}, expected {known[channel.name]}, the unit of the stage's {kind})"
@@ -323,9 +323,9 @@ def _extent(record: Record, requirements: RecordRequirements, where: str) -> Ite
     if resolution is not None and record.duration * resolution < averages:
         got = f"(got {record.duration * resolution:.3g} in {record.duration:.4g} s, expected {averages})"
         what = f"too few averages at a resolution of {resolution:g} Hz {got}"
-        advice = f'Request {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
+        advice = f'Request a resolution of {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
         yield _fault(FaultTolerance.SHORT, where, "", what, advice)
     if highest is not None and record.rate <= 2.0 * highest:
-        what = f"it is sampled at {record.rate:g} Hz, at most twice the highest mode at {highest:g} Hz"
+        what = f"it is sampled at {record.rate:g} Hz, not above twice the frequency of the highest mode, {highest:g} Hz"
         advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to identify only modes below {0.42 * record.rate:g} Hz'
         yield _fault(FaultTolerance.SLOW, where, "", what, advice)

@@ -23,9 +23,9 @@ class Numbers:
     """Statistics of the samples of one channel, accumulated block by block.
 
     `broken` of `count` samples are not finite; `first_broken` is the index of the first such sample. The longest interval of constant value
-    starts at sample `still_from`, and has `still` samples with the value `still_at`. `lows` and `highs` are the lowest and highest samples,
-    as many as are needed to distinguish clipping from a tail of the distribution. `step` is the smallest nonzero difference of successive
-    samples. `pairs` are the lowest and the highest value of equal successive samples.
+    starts at sample `still_from`, and has `still` samples with the value `still_at`. `lows` and `highs` are the lowest and the highest
+    samples, at most 2048 of each; they show whether the signal is clipped. `step` is the smallest nonzero difference of successive samples.
+    `pairs` are the lowest and the highest value that occurs in two successive samples.
     """
 
     count: int = 0
@@ -115,7 +115,7 @@ class RecordNumbers:
 
 
 def gather(record: Record) -> RecordNumbers:
-    """Gather the statistics in one pass over a record, with the memory of one block.
+    """Gather the statistics in one pass over a record; only one block of samples is in memory at a time.
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> found = gather(in_memory([Channel("S1", "um")], 1.0, np.array([[0.0], [1.0], [1.0], [np.nan]])))

@@ -34,7 +34,7 @@ class Kind(Enum):
 
 
 class FaultTolerance(Enum):
-    """Fault of a record that a user accepts, and how the data are then used; by default no fault is accepted."""
+    """Faults of a record that a user can accept; each entry states how the data are then used. By default, no fault is accepted."""
 
     TRUNCATED = "truncated"
     """Use the available part of a truncated file."""
@@ -49,24 +49,24 @@ class FaultTolerance(Enum):
     DEPENDENT = "dependent"
     """Omit inputs that the other inputs explain."""
     SHORT = "short"
-    """Use a record that is short for the requested resolution."""
+    """Use a record that is too short for the requested resolution."""
     SLOW = "slow"
-    """Use a record sampled too slowly for the highest mode, up to 0.42 times its rate."""
+    """Use a record sampled too slowly for the highest mode, but only at frequencies up to 0.42 times its sampling rate."""
     NAMES = "names"
     """Omit channels without a role, or absent from the stage."""
     WINDOWED = "windowed"
     """Use a hammer force unchanged although it is exactly zero after the impact."""
     INCOMPLETE = "incomplete"
-    """Omit outputs with missing responses, and all coherence if the last response has none."""
+    """Omit outputs with missing responses; omit the whole coherence if the coherence of the last response is missing."""
 
 
 @dataclass(frozen=True)
 class Arrays(CheckedFields):
-    """Names or patterns that assign the arrays of a MAT or HDF5 file, or the columns of a CSV file.
+    """Names or patterns that specify the array of a MAT or HDF5 file, or the column of a CSV file, that contains each quantity.
 
-    A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of strings, one per channel. Responses
-    have `frequencies` [Hz], complex `responses`, and optional `coherence`. Default names are those in files written by flexstage. For a CSV
-    file only `time` and `frequencies` apply: the other columns are channels.
+    A record consists of `samples` and one of `time` [s], `rate` [Hz] and `step` [s]. `names` and `units` are lists with one string per
+    channel. Responses have `frequencies` [Hz], complex `responses`, and optional `coherence`. The default names are the names in files that
+    flexstage writes. In a CSV file, only `time` and `frequencies` can be assigned: all other columns are channels.
     """
 
     samples: tuple[str, ...] = ("samples",)
@@ -80,7 +80,7 @@ class Arrays(CheckedFields):
     coherence: tuple[str, ...] = ("coherence",)
 
     def stated(self) -> tuple[tuple[str, str], ...]:
-        """Return pairs (meaning, name) of the assignments that differ from the default.
+        """Return pairs (field, assigned name) for every field that differs from its default.
 
         >>> Arrays(samples=("u", "y"), time=("t",)).stated()
         (('samples', 'u'), ('samples', 'y'), ('time', 't'))
@@ -94,8 +94,9 @@ class Options(CheckedFields):
     """User options for reading a file.
 
     `inputs` and `outputs` are names or patterns (`u*`, `S?`) of channels. If only `inputs` is specified, all other channels are outputs,
-    and vice versa. `only` (option `--channels`) selects the channels to use. `rate` in Hz replaces the times in the file. `units` are pairs
-    of a name or pattern and a unit. `arrays` assigns the file's arrays. `accept_faults` are the accepted faults.
+    and vice versa. `only` (option `--channels`) selects the channels to use. `rate` [Hz] is used instead of the times in the file. `units`
+    are pairs of a name or pattern and a unit. `arrays` specifies which arrays or columns of the file contain which quantities.
+    `accept_faults` are the accepted faults.
     """
 
     inputs: tuple[str, ...] = ()
@@ -109,7 +110,7 @@ class Options(CheckedFields):
 
 
 def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:
-    """Assign roles and units to channels: from the user, or else from the file. Roles that are still unknown follow from the names.
+    """Assign a role and a unit to each channel: as the user specifies, or else as in the file. Unknown roles follow from the names.
 
     Raises `DesignError` for patterns that match no channel and for channels with both roles.
 
@@ -150,7 +151,7 @@ def number_names(names: Iterable[str]) -> tuple[str, ...]:
     """
     listed = list(names)
     counts, seen = Counter(listed), Counter[str]()
-    result: list[str] = []
+    result = list[str]()
     for name in listed:
         seen[name] += 1
         result.append(f"{name} {seen[name]}".strip() if counts[name] > 1 else name)

@@ -97,9 +97,9 @@ def changed_samples(samples: Samples, change: Callable[[Array], Array]) -> Sampl
 class Record(InNotebook, CheckedFields):
     """Channels sampled together at a constant rate.
 
-    `rate` is in Hz; `start` is the time of the first sample in s. `samples` are (n, channels) numbers in the channels' own units. `name`
-    and `source` identify the record and its file. Raises `DesignError` for an invalid rate, for missing or unnamed channels and for
-    duplicate names.
+    `rate` is in Hz; `start` is the time of the first sample in s. `samples` contains n samples of each channel (n, channels), in the
+    channels' own units. `name` and `source` identify the record and its file. Raises `DesignError` for an invalid rate, for missing or
+    unnamed channels and for duplicate names.
 
     >>> both = (Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT))
     >>> shaken = Record(both, 2048.0, InMemory(np.zeros((4096, 2))))
@@ -121,12 +121,12 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """Name of the record in messages: its file; without a file, its `name`."""
+        """Name of the record in messages: its file, or its `name` if the record has no file."""
         return self.source or self.name or "record"
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """Kind of data: `record`, in contrast to `responses`."""
+        """Kind of data: always `record` (frequency responses have the kind `responses`)."""
         return "record"
 
     @property
@@ -193,7 +193,9 @@ class Record(InNotebook, CheckedFields):
         return replace(self, start=self.start + start / self.rate, samples=samples)
 
     def blocks(self, size: int, overlap: int = 0) -> Iterator[Array]:
-        """Iterate over blocks (size, channels), each with the last `overlap` samples of the previous block. The last block may be short.
+        """Iterate over the record in blocks of `size` samples, as arrays (size, channels).
+
+        Each block after the first begins with the last `overlap` samples of the previous block. The final block may be shorter.
 
         >>> five = Record((Channel("a"),), 1.0, InMemory(np.arange(5.0)[:, None]))
         >>> [block[:, 0].tolist() for block in five.blocks(3, overlap=1)]
@@ -243,12 +245,12 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """Name of the responses in messages: their file; without a file, their `name`."""
+        """Name of the responses in messages: their file, or their `name` if the responses have no file."""
         return self.source or self.name or "responses"
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """Kind of data: `responses`, in contrast to `record`."""
+        """Kind of data: always `responses` (records have the kind `record`)."""
         return "responses"
 
     @property

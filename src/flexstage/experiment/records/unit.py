@@ -25,7 +25,7 @@ _FURTHER = ("m/s", "rad/s", "rad/s^2", "A", "C", "W", "J", "N/s", "V/s")
 
 
 def plain_unit(text: str) -> str:
-    """Convert a unit to this package's spelling: symbols for words, `m/s2` as a power, no brackets; a single `g` is standard gravity.
+    """Convert a unit to the spelling of flexstage: symbols for words, `m/s^2` for `m/s2`, no brackets, `g0` (standard gravity) for `g`.
 
     >>> [plain_unit(text) for text in ("Volts", "m/s2", "[um]", "NONE", "g", "g0", "m/sec^2")]
     ['V', 'm/s^2', 'um', '', 'g0', 'g0', 'm/s^2']

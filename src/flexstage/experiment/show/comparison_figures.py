@@ -14,9 +14,9 @@ _THEORY, _FEA, _EXPERIMENT = SERIES[0], SERIES[2], SERIES[1]
 
 
 def compare_figure(found: Compared) -> Any:
-    """Plot frequencies of the platform's modes by model, finite elements and test as bars, with differences below, as a Figure.
+    """Plot the frequencies of the platform's modes in model, finite elements and test as bars, and the differences below the bars.
 
-    Whiskers are the test's 95 % intervals, shown in the lower panel as bands about zero.
+    Whiskers are the test's 95 % intervals. The lower panel shows these intervals as bands about zero. Returns a matplotlib Figure.
     """
     series: list[_Series] = [("theory", _THEORY, [row.theory for row in found.modes])]
     if found.fea is not None:

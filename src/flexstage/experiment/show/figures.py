@@ -142,7 +142,7 @@ def _decades(axes: Any) -> None:
 
 
 def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[float, float]) -> Any:
-    """Plot the estimators H1 (`first`) and `others`, such as H2, of each output for its dominant input in the `band` [Hz], as a Figure.
+    """Plot the response of each output to its dominant input in the `band` [Hz], by the estimates H1 (`first`) and `others` (e.g. H2).
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> from flexstage.experiment.spectral.transfer import h1, h2
@@ -166,8 +166,8 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
 def coherence_figure(found: Identified, multiple: Array | None, lines: Array | None = None) -> Any:
     """Plot the multiple coherence of the first outputs, and the ordinary coherence with every input, as a matplotlib Figure.
 
-    `multiple` (f, p) is the multiple coherence at the frequencies `lines` [Hz], by default those of the identified responses. For responses
-    from an analyser, `multiple` is None.
+    `multiple` (f, p) is the multiple coherence at the frequencies `lines` [Hz]; the default is the frequencies of the identified responses.
+    For responses from an analyser, `multiple` is None.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

@@ -30,7 +30,7 @@ from flexstage.show.viewer.data import StageData, stage_data
 
 
 def identify_report(seen: Identification, mechanism: Mechanism | None = None, shapes: StageShapes | None = None) -> str:
-    """Write the modes of a test as an HTML page: tables, responses with fit, coherence, stabilisation and, with a stage, shapes.
+    """Write the modes of a test as an HTML page: tables, responses with fit, coherence, stabilisation and, if a stage is given, shapes.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.pipeline import identification
@@ -77,7 +77,9 @@ def _compared_headline(found: Compared) -> Headline:
         return Headline(f"{said}.", good=False)
     worst = max(seen, key=lambda mode: abs(mode.difference or 0.0))
     off = percent(worst.difference or 0.0, 3)
-    return Headline(f"{said}; the largest error of theory is {off}, in mode {worst.number} ({worst.name}).", len(seen) == len(found.modes))
+    return Headline(
+        f"{said}; the largest frequency error of theory is {off}, in mode {worst.number} ({worst.name}).", len(seen) == len(found.modes)
+    )
 
 
 def _sections(seen: Identification, measured: Section | None = None) -> list[Section | None]:

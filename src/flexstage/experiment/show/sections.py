@@ -77,15 +77,15 @@ def response_data_section(seen: Identification) -> Section | None:
     if others and seen.spectra is not None:
         picture = to_svg(estimator_figure(found.responses, others, focus(found)), "estimators", "Comparison of response estimates")
         text = (
-            "Response of each output (at most six) to its dominant input. H1 assumes noise at outputs, H2 at inputs. G_ij/G_ii (Eq. 29 of "
-            "Shin & Moon) equals H1 for a single input and for uncorrelated inputs."
+            "Response of each output (at most six) to its dominant input. H1 assumes noise at outputs, H2 assumes noise at inputs. "
+            "G_ij/G_ii (Eq. 29 of Shin & Moon) equals H1 for a single input and for uncorrelated inputs."
         )
         estimators = Picture(picture, text)
     return section("Responses", [Picture(drawn, caption), fold("H1, H2 and the ratio of Shin & Moon", estimators)])
 
 
 def coherence_section(seen: Identification) -> Section | None:
-    """Make the section of ordinary and multiple coherence; `None` without stored coherence."""
+    """Make the section of ordinary and multiple coherence; `None` if there is neither."""
     if seen.found.responses.coherence is None and seen.multiple is None:
         return None
     known = seen.spectra
@@ -96,8 +96,8 @@ def coherence_section(seen: Identification) -> Section | None:
         window = known.segments.window.value.capitalize()
         cut = f" Segments of the multiple coherence: {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
     caption = (
-        "Multiple coherence: fraction of output power that all inputs explain. Ordinary coherence: fraction that one input explains. At "
-        "most six outputs and six inputs are shown." + cut
+        "Multiple coherence: fraction of output power that all inputs explain. Ordinary coherence: fraction of output power that one input "
+        "explains. At most six outputs and six inputs are shown." + cut
     )
     return section("Coherence", [Picture(drawn, caption)])
 
@@ -108,14 +108,14 @@ def stabilisation_section(found: Identified) -> Section | None:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
     caption = (
-        "Poles of models of increasing order. A pole is stable if it differs from one of a lower order by less than 0.2 % in frequency "
-        "and 5 % in damping, and if the MAC of their participations exceeds 0.98."
+        "Poles of models of increasing order. A pole is stable if it differs from a pole of a lower order by less than 0.2 % in frequency "
+        "and 5 % in damping, and if the MAC of the participations of the two poles exceeds 0.98."
     )
     return section("Stabilisation", [Picture(drawn, caption)])
 
 
 def measured_shape_section(found: Identified, shapes: StageShapes, data: StageData) -> Section | None:
-    """Make the section of measured shapes as stage motions, or of the reason for their absence; `None` without modes."""
+    """Make the section that shows measured shapes as stage motions, or the reason why they are missing; `None` if there are no modes."""
     if not len(found.frequencies):
         return None
     if shapes.missing:
@@ -143,7 +143,7 @@ def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) ->
 
 
 def pair_section(found: Compared, data: StageData) -> Section | None:
-    """Make the section of paired model and measured modes, animated side by side; `None` without a pair that can be drawn."""
+    """Make the section of paired model and measured modes, animated side by side; `None` if no pair can be drawn."""
     theory, known = platform_modes(data), {each.name for each in data.motions}
     partners = [
         (f"mode {theory[mode.number - 1].name}", f"mode measured {mode.experiment.number}")

@@ -87,5 +87,5 @@ def motion_explained_text(explained: Array) -> str:
     'The drawn motion explains at least 99.9 % of every measured shape.'
     """
     if float(np.min(explained)) > 1.0 - 1e-9:
-        return "The drawn motion cannot be checked: this requires more outputs than degrees of freedom."
+        return "The drawn motion cannot be checked: a check requires more outputs than degrees of freedom."
     return f"The drawn motion explains at least {percent(np.floor(1e3 * float(np.min(explained))) / 1e3)} of every measured shape."

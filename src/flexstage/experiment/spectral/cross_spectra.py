@@ -53,9 +53,9 @@ class Spectra:
     """One-sided spectral densities of m inputs and p outputs at f `frequencies` [Hz]: `xx` (f, m, m), `yx` (f, p, m), `yy` (f, p, p).
 
     X and Y are the transforms of the inputs and outputs, E is the mean over segments. `yx` is E[Y X^H]: entry (i, j) is output i times the
-    conjugate of input j. `xx` is E[X X^H], and `yy` is E[Y Y^H]. The paper's G_ij = E[X_i* Y_j] (equation 29) is yx[j, i]. The unit of an
-    entry is the product of the units of its two channels, per Hz. `averages` is the number of segments; `independent` is the equivalent
-    number of segments without overlap.
+    conjugate of input j. `xx` is E[X X^H], and `yy` is E[Y Y^H]. The spectrum G_ij = E[X_i* Y_j] of Shin & Moon (equation 29) is yx[j, i].
+    The unit of an entry is the product of the units of its two channels, per Hz. `averages` is the number of segments; `independent` is the
+    equivalent number of segments without overlap.
     """
 
     frequencies: Array
@@ -90,9 +90,10 @@ class Spectra:
 def spectra(record: Record, segments: Segments) -> Spectra:
     """Estimate the spectra of a record's inputs and outputs by Welch's method: averages over windowed, overlapping segments.
 
-    Reference: Welch, IEEE Transactions on Audio and Electroacoustics 15 (1967) 70. The memory does not depend on the record's length. The
-    mean of each segment is subtracted. The window smears the estimate over about two lines: choose segments so long that several lines are
-    within the sharpest resonance. Raises `DesignError` for a record without outputs, or shorter than a segment.
+    Reference: Welch, IEEE Transactions on Audio and Electroacoustics 15 (1967) 70. The memory use does not depend on the record's length.
+    The mean of each segment is subtracted. The window smears the estimate over about two frequency lines. Choose segments so long that
+    several frequency lines lie within the width of the sharpest resonance. Raises `DesignError` for a record without outputs, or shorter
+    than a segment.
 
     >>> from flexstage.experiment.records.record import Role, in_memory
     >>> noise = np.random.default_rng(0).standard_normal((64_000, 1))

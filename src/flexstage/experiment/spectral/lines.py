@@ -1,10 +1,10 @@
 """Transform lines of whole records, and their sums over frequency cells: sufficient statistics for a fit of modes.
 
-A record's block of N samples, transformed without a window, satisfies Y(f) = H(f) U(f) + T(f) + V(f) at every line, with noise V. T is
-the block's transient. It has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 2). T is fitted as the
-response to a further "input" that is 1 at every line, so that it causes no leakage. A cell is narrow compared with the distance to the
-nearest pole. In a cell, H is therefore a polynomial of degree 7, to six digits. Sums of products of lines and polynomials are sufficient
-for the fit.
+A record's block of N samples, transformed without a window, satisfies Y(f) = H(f) U(f) + T(f) + V(f) at every line, with outputs Y,
+responses H, inputs U and noise V. T is the block's transient. It has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed.,
+2012, ch. 2). T is fitted as the response to a further "input" that is 1 at every line, so that it causes no leakage. A cell is narrow
+compared with the distance to the nearest pole. In a cell, a polynomial of degree 7 therefore represents H to six digits. Sums of products
+of lines and polynomials are sufficient for the fit.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ def edges(poles: Array, low: float, high: float) -> Array:
 
 
 def gather_cells(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:
-    """Sum the lines in the cells of every band, block by block; `bounds` are the cell limits of each band in Hz.
+    """Sum the products of lines (see `Cells`) in the cells of every band, block by block; `bounds` are each band's cell limits in Hz.
 
     >>> lines = Lines(np.arange(8.0), np.ones((8, 1)), 2.0 * np.ones((8, 1)), (0,))
     >>> [cells] = gather_cells([lines], [np.array([2.0, 4.0, 6.0])])

@@ -13,7 +13,7 @@ from flexstage.experiment.spectral.cross_spectra import Window
 _NEAR = 0.7
 _TERMS = 16
 SMEARING = (Window.BOXCAR, Window.HANN)
-"""Windows with a known effect."""
+"""Windows with an effect that `WindowLeakage` can compute."""
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class WindowLeakage:
     """Effect of the `window` on estimated responses, for segments of length `seconds`.
 
     With white noise as input, the estimated impulse response is the true impulse response times r(t/T), with the window's autocorrelation r
-    and the duration T of a segment. A fit accounts for the window: its functions 1/(j f - p) of the frequency f, with poles p, are smeared
-    in the same way.
+    and the duration T of a segment. A fit accounts for the window: the fitted functions 1/(j f - p) of the frequency f, with poles p, are
+    smeared in the same way.
     """
 
     window: Window

@@ -37,7 +37,7 @@ def h2(spectra: Spectra) -> Responses:
     """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; with more outputs than inputs, the inverse is a least-squares inverse.
 
     G_yy are the spectra of the outputs y, G_xy the cross spectra with the inputs x. H2 has more variance than H1, and noise at the outputs
-    causes an upward bias. Raises `DesignError` for fewer outputs than inputs.
+    biases H2 upwards. Raises `DesignError` for fewer outputs than inputs.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> h2(example_spectra()).values[3].round(9).real.tolist()
@@ -123,7 +123,7 @@ def dependent_inputs(spectra: Spectra) -> list[Finding]:
         what = f"{spectra.averages} averages cannot separate {count} inputs"
         return [Finding("inputs", what, "Record longer, or request a coarser resolution")]
     involved = [spectra.inputs[index].name for index in np.flatnonzero(np.abs(vectors[:, 0]) > 0.1)]
-    what = f"{' and '.join(involved)} are not independent (smallest eigenvalue of their coherence {max(values[0], 0.0):.1e})"
+    what = f"{' and '.join(involved)} are not independent (smallest eigenvalue of the coherence matrix {max(values[0], 0.0):.1e})"
     return [Finding("inputs", what, "Drive them by independent noise, or omit all but one")]
 
 

@@ -53,9 +53,10 @@ class Fitted(Generic[_State]):
 
 
 def gauss_newton(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
-    """Minimise |r|^2 + |u|^2, with residuals r and parameters u, by Gauss-Newton steps with step halving, from `start` with its `state`.
+    """Minimise |r|^2 + |u|^2 by Gauss-Newton steps with step halving, from the parameters `start` and their model `state`.
 
-    Raises `DesignError` if the iteration does not converge, or if steps lead to invalid designs.
+    Here r are the residuals and u the parameters. Raises `DesignError` if the iteration does not converge, or if steps lead to invalid
+    designs.
 
     >>> line = Problem(lambda u, _: u, lambda u: 3.0 * (1.0 - u), lambda u: np.array([[3.0]]))
     >>> gauss_newton(line, np.zeros(1), np.zeros(1)).parameters.round(9).tolist()  # 9 / (9 + 1)

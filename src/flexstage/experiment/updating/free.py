@@ -19,7 +19,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 @dataclass(frozen=True)
 class Prior(CheckedFields):
-    """Assumed errors of an update, as relative standard deviations: of the parameters before the test, of the model and of the gains.
+    """Assumed relative standard deviations in an update: of the parameters before the test, the model's frequencies and the static gains.
 
     `prior` is the standard deviation of every free parameter, unless `priors` has a value for its address. `model_error` is the error of
     the model's frequencies that remains with the best parameters. `gain_error` is the error of static gains, due to the model and to the
@@ -39,7 +39,7 @@ DEFAULT = Prior()
 class Free:
     """Free parameters of an update: full addresses, units, initial values (P,), and prior standard deviations (P,) of the logarithms.
 
-    `mechanism` is the description, including the overrides that these addresses require.
+    `mechanism` is the stage's description, with the overrides that the addresses require.
     """
 
     mechanism: Mechanism

@@ -56,8 +56,8 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
     Let x = f/f_1 be the frequency relative to the lowest mode. The function a + (b x^2 + c x^4)/(1 - x^2) is fitted by least squares to the
     real part of the responses (estimator H1) up to x = 0.35. The constant a is the gain; b and c are the other two coefficients. The fitted
     function represents the lowest mode, at f_1, exactly. Even powers approximate higher modes, lags and the amplifier's bandwidth. An input
-    in volts is converted to free stroke with the stroke and voltage range of its stack. Raises `DesignError` without an actuator input, for
-    units not convertible to those of the model, or for too few spectral lines below the modes.
+    in volts is converted to free stroke with the stroke and voltage range of its stack. Raises `DesignError` if no input is an actuator, if
+    a unit cannot be converted to the model's unit, or if there are too few spectral lines below the modes.
     """
     known = drivable_actuators(mechanism, model)
     inputs = tuple(channel.name for channel in experiment.inputs if channel.name in known)
@@ -107,7 +107,7 @@ def _unit_findings(channels: list[Channel]) -> list[Finding]:
         Finding(
             channel.name,
             f'its unit "{channel.unit}" does not fit a gauge or an actuator',
-            "Use the unit of a stroke, voltage, current or force for an input, of length or angle for a gauge, or compare without gains",
+            "Use a unit of stroke, voltage, current or force for an input, a unit of length or angle for a gauge; or compare without gains",
         )
         for channel in channels
     ]
@@ -123,7 +123,7 @@ def is_voltage(unit: str) -> bool:
 
 
 def si_size(mechanism: Mechanism, channel: Channel, reading: str = "m") -> float:
-    """Return the factor from a channel's unit to the SI unit of its gauge `reading` or actuator input; NaN for other units."""
+    """Return the factor from a channel's unit to the SI unit of its actuator's input or of its gauge (`reading`); NaN for other units."""
     if unit_problem(channel.unit) is not None:
         return float("nan")
     unit = dimension_of(channel.unit)

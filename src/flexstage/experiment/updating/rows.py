@@ -58,7 +58,7 @@ def mode_rows(mechanism: Mechanism, compared: Compared, experiment: Identified) 
     places = platform_modes(mechanism, lumped(mechanism)).platform
     repeated = [group.numbers for group in compared.repeated]
     groups = [*repeated, *((row.number,) for row in compared.modes if not any(row.number in group for group in repeated))]
-    found: list[ModeRow] = []
+    found = list[ModeRow]()
     for numbers in sorted(groups):
         rows = [compared.modes[number - 1] for number in numbers]
         measured = tuple(row.experiment.index for row in rows if row.experiment is not None)
@@ -102,7 +102,7 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
     model = lumped(mechanism)
     solved = eigen(model)
     if len(solved.shapes) != len(before.solved.shapes):
-        what = f"its parameters changed so far that the model has {len(solved.shapes)} coordinates, not {len(before.solved.shapes)}"
+        what = f"the changed parameters give the model {len(solved.shapes)} coordinates instead of {len(before.solved.shapes)}"
         raise refuse("update", what, "Check units and names of the record's channels (flexstage compare), or specify narrower priors")
     weighted = before.model.inertia_matrix @ before.solved.shapes
     likeness = []

@@ -25,7 +25,9 @@ def residual_table(found: Updated) -> Table | None:
     modes = [each for each in found.residuals if each.unit == "Hz"]
     gains = sorted((each for each in found.residuals if each.unit != "Hz"), key=lambda each: -abs(each.misfit_before))
     before, after = number(found.chi_square_before, 3), number(found.chi_square, 3)
-    notes = [f"Chi-square of {found.freedoms} data: {before} before, {after} after (prior included), probability {found.probability:.2g}."]
+    notes = [
+        f"Chi-square of {found.freedoms} data: {before} before, {after} after (with priors); probability of more: {found.probability:.2g}."
+    ]
     if len(gains) > _MOST_GAINS:
-        notes.append(f"The {_MOST_GAINS} of {len(gains)} gains with the largest initial misfit.")
+        notes.append(f"The table lists the {_MOST_GAINS} gains with the largest initial misfit (of {len(gains)} gains).")
     return result_table([*modes, *gains[:_MOST_GAINS]], notes=notes)

@@ -106,7 +106,7 @@ class UpdatedNumber:
     """Values of an updated parameter before and after the update, in SI units, and standard deviations of its logarithm.
 
     `change` is relative. `prior_variance_left` is the fraction of the prior variance that remains; `identifiability` and `verdict` follow
-    from it.
+    from this fraction.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -149,7 +149,7 @@ class Combination:
         "Identifiable combinations",
         "combination singular_value prior_variance_left",
         notes=(
-            "Unit: prior standard deviations. With a singular value of 1, the test halves the variance; far below 1, it has no effect.",
+            "Unit: prior standard deviations. If the singular value is 1, the test halves the variance; if far below 1, it has no effect.",
         ),
     )
 
@@ -237,12 +237,12 @@ class Updated(InNotebook):
 
     @property
     def remaining_variance(self) -> Array:
-        """Fraction (P,) of each prior variance that remains."""
+        """Fraction (P,) of each parameter's prior variance that remains after the test."""
         return np.diag(self.covariance) / self.prior**2
 
     @property
     def identifiability(self) -> tuple[Identifiability, ...]:
-        """Identifiability of each parameter; withheld for identifiable ones if chi-squared exceeds ten times the number of data."""
+        """Identifiability of each parameter; withheld for identifiable parameters if chi-squared exceeds ten times the number of data."""
         grades = Identifiability
         known = (
             grades.WELL if share <= _IDENTIFIED else grades.WEAKLY if share <= _HARDLY else grades.NOT for share in self.remaining_variance
@@ -288,13 +288,13 @@ class Updated(InNotebook):
 @check_arguments
 @one_thread
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Prior = DEFAULT) -> Updated:
-    """Update the parameters at the addresses `names` so that the lumped model agrees best with a test; `known` are their priors.
+    """Update the parameters at the addresses `names` so that the lumped model agrees best with a test; `known` are the assumed errors.
 
     The method is Bayesian least squares in the logarithms x = ln(p/p0) of the parameters p relative to their initial values p0 (Tarantola
     2005, ch. 3; Friswell & Mottershead 1995, ch. 8). Gauss-Newton steps, with exact derivatives by complex step, minimise the sum of ((d -
-    g(x))/sigma)^2 over all data d plus the sum of (x/sigma_p)^2 over all parameters. Here g(x) are the model's values, sigma and sigma_p
-    the standard deviations of data and priors. The posterior covariance is (J^T W J + S^-1)^-1 with the derivatives J of g, the weights W =
-    diag(1/sigma^2) and the prior covariance S = diag(sigma_p^2).
+    g(x))/sigma)^2 over all data d plus the sum of (x/sigma_p)^2 over all parameters. Here g(x) are the model's values, sigma the standard
+    deviations of the data, and sigma_p the prior standard deviations of the parameters. The posterior covariance is (J^T W J + S^-1)^-1
+    with the derivatives J of g, the weights W = diag(1/sigma^2) and the prior covariance S = diag(sigma_p^2).
 
     The data d are the logarithms of the modes' frequencies, paired as in `compare` with `loaded=False`; for repeated modes, the square
     root of their mean squared frequency is used. The standard deviations sigma of the data include the identified standard deviations and
@@ -433,10 +433,10 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
         )
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:
-            yield f"{name} changed by {abs(moved):.2g} prior standard deviations ({100.0 * prior:.2g} %): another parameter may be wrong."
+            yield f"{name} changed by {abs(moved):.2g} prior standard deviations of {100.0 * prior:.2g} %: another parameter may be wrong."
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
-            yield f"the test shows {group.seen} of the repeated modes {' and '.join(map(str, group.numbers))}; their mean represents all."
+            yield f"repeated modes {' and '.join(map(str, group.numbers))}: the test shows {group.seen}; the measured mean represents all."
 
 
 def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:

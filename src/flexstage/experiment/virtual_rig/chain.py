@@ -1,8 +1,8 @@
 """Measuring chain of a virtual test in the frequency domain: from white noise to recorded inputs and gauge readings.
 
 The whole chain is linear and time-invariant except for the gauges' quantisation, and the drive is band-limited. The continuous response is
-therefore exactly the convolution of the drive's samples with the chain's impulse response. It is computed block by block by transforms,
-with the continuous frequency response of the stage, without discretisation.
+therefore exactly the convolution of the drive's samples with the chain's impulse response. The response is computed block by block by
+transforms, with the continuous frequency response of the stage, without discretisation.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _LINES = 4096
 class Chain:
     """Transfer functions from white noise of unit variance to the signals of the measuring chain, at the lines of a Fourier transform.
 
-    The transform covers three blocks of `size` samples; the sampling rate is multiplied by `finer`. `strokes` (l, m) are transfer functions
-    to the inputs after the amplifiers, `inputs` (l, m) to the recorded inputs [m, A or N], and `outputs` (l, p, m) to the gauge readings
-    [m, rad]. `strokes`, `inputs` and `outputs` use the first l spectral lines, up to the end of the drive's band. `gauge` (f, p) are
-    transfer functions to the noise of the gauges, at all f lines. `note` describes the damping model.
+    The transform covers three blocks of `size` samples, at `finer` times the sampling rate of the record. `strokes` (l, m) are transfer
+    functions to the inputs after the amplifiers, `inputs` (l, m) to the recorded inputs [m, A or N], and `outputs` (l, p, m) to the gauge
+    readings [m, rad]. `strokes`, `inputs` and `outputs` use the first l spectral lines, up to the end of the drive's band. `gauge` (f, p)
+    are transfer functions to the noise of the gauges, at all f lines. `note` describes the damping model.
     """
 
     size: int
@@ -128,7 +128,7 @@ def butterworth(frequencies: Array, order: int, corner: float) -> Array:
 
 
 def amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
-    """Evaluate the drive's amplitude shape (f,): 1 within the band, zero below `low`/2 and above 1.25 `high`.
+    """Evaluate the drive's amplitude shape (f,): 1 within the `band` (low, high), 0 below low/2 and above 1.25 high.
 
     >>> (amplitude_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)) ** 2).round(6).tolist()
     [0.0, 1.0, 1.0, 0.25, 0.0]
@@ -165,7 +165,7 @@ def _block(memory: float, rate: float) -> int:
     """Block size, a power of two: longer than the chain's impulse response, and than the drive's spectral edges in time."""
     size = max(_SHORTEST, 2 ** int(np.ceil(np.log2(memory * rate))))
     if size > _LONGEST:
-        what = f"vibrations decay too slowly (got {memory:.4g} s or {memory * rate:.3g} samples, expected at most {_LONGEST:.3g})"
+        what = f"vibrations decay too slowly (got {memory:.4g} s or {memory * rate:.3g} samples, expected {_LONGEST:.3g} samples at most)"
         require([Finding("damping", what, "Use more damping, a lower rate, or a band that starts at 0 or at a higher frequency")])
     return size
 

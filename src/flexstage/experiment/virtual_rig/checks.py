@@ -46,7 +46,7 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
         named = " and as a ".join(each.value for each in drive.amounts)
         yield Finding("drive", f"its rms is specified as a {named}", "Remove one of them")
     if drive.band is not None and not drive.band[0] < drive.band[1]:
-        yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Use 0 <= low < high in Hz")
+        yield Finding("band", f"invalid band (got {drive.band[0]:g} Hz to {drive.band[1]:g} Hz)", "Use 0 <= low < high in Hz")
     if amplifier.bandwidth is not None and amplifier.resistance is not None:
         yield Finding(
             "amplifier", "both its bandwidth and its resistance are specified", "Specify only one of them: it determines the other"
@@ -61,7 +61,7 @@ def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -
     highest = platform_modes(mechanism, model).highest
     top = np.inf if setup.drive.band is None else (1.0 + TAPER) * setup.drive.band[1]
     if setup.rate is not None and 0.0 < setup.rate < 2.0 * min(highest, top):
-        what = f"the sampling rate of {setup.rate:g} Hz is below twice the highest platform mode, {highest:.4g} Hz"
+        what = f"the sampling rate of {setup.rate:g} Hz is below twice the frequency of the highest platform mode, {highest:.4g} Hz"
         faster = f"Sample at {2.0 * highest:.4g} Hz at least, better at {10.0 * highest:.0f} Hz"
         yield Finding("rate", what, f"{faster}, or drive in a band up to {0.4 * setup.rate:g} Hz")
 
@@ -124,7 +124,7 @@ def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterato
 
 
 def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
-    """Find signals with peaks (six times rms) beyond the strokes, the amplifiers' current or the gauges' ranges, or below all resolutions.
+    """Find signals whose peaks (six times rms) exceed a stroke, an amplifier's current or a gauge's range, or are below all resolutions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

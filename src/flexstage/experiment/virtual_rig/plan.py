@@ -52,8 +52,8 @@ class Plan:
     """Set-up of a virtual test with all defaults resolved, in SI, for each driven actuator (m,) and each gauge (p,).
 
     `units` (p,) are the units of gauge readings. `rms` (m,) are rms values of the commanded `inputs`. `bandwidths` (m,) are the bandwidths
-    of amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) standard deviations of their
-    drifts after one minute. `highest` is the frequency of the highest platform mode [Hz].
+    of amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are the corner frequencies of the gauges [Hz]. `walks` (p,) are the standard
+    deviations of the gauges' drifts after one minute. `highest` is the frequency of the highest platform mode [Hz].
     """
 
     setup: RigSetup
@@ -180,7 +180,7 @@ def _driven_input(part: Actuator, limits: StrokeLimits, name: str) -> DrivenInpu
 
 
 def volts_per_metre(piezo: ChargedActuator) -> float:
-    """Compute the voltage per free stroke [V/m]: the voltage range divided by the full stroke; NaN without a range.
+    """Compute the voltage per free stroke [V/m]: the voltage range divided by the full stroke; NaN if the range is unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(volts_per_metre(stacks(double_triangle())["B4"]))

@@ -22,14 +22,15 @@ _MICROMETRE = 1e6
 
 @check_arguments
 def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Record:
-    """Simulate the record of a test: inputs are strokes, voltages, currents or forces, outputs are gauges, with names and units.
+    """Simulate the record of a test: its inputs are strokes, voltages, currents or forces, and its outputs are gauge readings.
 
     `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` replaces the model's damping. The drive of each
-    actuator is band-limited Gaussian noise, filtered by the amplifier's lag 1/(1 + j f/f_a) with the corner frequency f_a. Gauges add noise
-    to the stage's motion; lag, anti-alias filter, drift and quantisation follow, in this order. The record starts in the steady state.
-    Strokes are free strokes around the bias. The stage is linear; its response to the continuous noise is exact. Structural damping is
-    converted to equivalent modal damping ratios, with a note in the record's name. Samples are computed on demand, in blocks; equal set-ups
-    give equal samples.
+    actuator is band-limited Gaussian noise, filtered by the amplifier's lag 1/(1 + j f/f_a) with the corner frequency f_a. Each gauge adds
+    noise to the stage's motion. The sum passes through the gauge's lag and the anti-alias filter. Then drift is added, and the signal is
+    quantised. The record starts in the steady state. Strokes are the stacks' free strokes, relative to the stroke at the bias voltage. The
+    stage is linear; its response to the continuous-time noise is computed without discretisation error. Structural damping is converted to
+    equivalent modal damping ratios, with a note in the record's name. Samples are computed on demand, in blocks; equal set-ups give equal
+    samples.
 
     Raises `DesignError` with all errors. Examples are an invalid duration, a rate below twice the frequency of the highest platform mode,
     unknown actuators, missing gauges, and peaks that exceed strokes, currents or gauge ranges.

@@ -1,4 +1,4 @@
-"""Set-up of a virtual test: noise, amplifier, filter, gauges, sampling. Imports little, because the command line lists its choices."""
+"""Set-up of a virtual test: noise, amplifier, filter, gauges, sampling."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.parts.amplifier import Amplifier
 
 @dataclass(frozen=True)
 class NoiseDrive(CheckedFields):
-    """Independent Gaussian noise drive of the actuators.
+    """Drive of the actuators by Gaussian noise, independent for each actuator.
 
     `stroke` [m] and `voltage` [V] are the rms of a stack's commanded free stroke or voltage. `current` [A], `force` [N] or `torque` [N m]
     is the rms of a force actuator's input. The default is 1 % of a stack's full stroke, or of a force actuator's sustained input limit.
@@ -61,10 +61,11 @@ class AntiAlias(CheckedFields):
 
 @dataclass(frozen=True)
 class Sensing(CheckedFields):
-    """Errors of gauges: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
+    """Errors of gauges: white noise of `density` [m/Hz^0.5], quantisation in steps of `resolution` [m], and `drift`.
 
-    Default density and resolution are those of each gauge in the design. The drift is a random walk with standard deviation `drift` [m]
-    after a minute. The values apply to displacement gauges. Rotation gauges have the design's values, without drift.
+    By default, `density` and `resolution` are the values of each gauge in the design. The drift is a random walk with standard deviation
+    `drift` [m] after a minute. `density`, `resolution` and `drift` apply to displacement gauges. Rotation gauges have the design's values,
+    without drift.
     """
 
     density: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
@@ -76,9 +77,9 @@ class Sensing(CheckedFields):
 class RigSetup(CheckedFields):
     """Virtual test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; readings are recorded `delay` [s] late.
 
-    A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear. The default rate is the lowest
-    power of two that is at least ten times the frequency of the highest platform mode. Equal set-ups of equal stages give bit-identical
-    records. Without `input_quantity`, each recorded input is the actuator's input quantity: stroke, current or force.
+    A test is refused if its peaks exceed the amplifier's largest output current, because a saturated amplifier is not linear. The default
+    rate is the lowest power of two that is at least ten times the frequency of the highest platform mode. Equal set-ups of equal stages
+    give bit-identical records. Without `input_quantity`, each recorded input is the actuator's input quantity: stroke, current or force.
 
     >>> RigSetup(seconds=10.0).filter.order
     8

@@ -4,7 +4,7 @@
 - `bodies.platform.mass`: a value in the tree of the description, name by name.
 - `units.horizontal.links.front.at.x`, short `horizontal/front.at.x`: a link's placement in all instances of its unit.
 - `horizontal/front.thickness`: the part of one link of a unit, in all instances. The value is an override, in `overrides`.
-- `B2/front.thickness`: the same in one instance; it takes precedence over the override of all instances.
+- `B2/front.thickness`: the same part in one instance; this override takes precedence over the override of all instances.
 - `links.strut.thickness`: the part of a link of the stage; also an override.
 - `numbers.arm`: a named number; results of formulas change with it.
 - `B2.shift.x`, `S1.rotation.z`: misalignment of a unit instance or a gauge relative to its pattern; an override, default zero.
@@ -145,7 +145,7 @@ def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> M
     }
     if place.number and circle:
         what = f'circular formula: "{text}" depends on {", ".join(sorted(circle))}, and therefore on {place.number}'
-        raise refuse(where, what, "Use a number, or a formula that does not depend on it")
+        raise refuse(where, what, "Use a number, or a formula that does not depend on the number itself")
     changed = set_value(mechanism, where, value)
     if place.number:
         own_unit = NamedNumber(value, shown_unit(amount_of(mechanism.numbers[place.number])))

@@ -62,7 +62,7 @@ NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a
 class PlacedBody:
     """Body of the expanded stage with its frame, reference point (..., 3) and mass properties, in the stage's frame.
 
-    `drawn` contains the body and all bodies that name it in `of`. `mass` is the total mass of `drawn`, computed with `materials`.
+    `drawn` contains the body and all bodies that name this body in `of`. `mass` is the total mass of `drawn`, computed with `materials`.
     """
 
     name: str
@@ -97,8 +97,8 @@ class PlacedBody:
 class PlacedLink:
     """Link of the expanded stage: joined bodies by name, part with overrides, link frame in the stage's frame.
 
-    `name` is the address of this instance (`B1/front`), `drawn` its address in the description (`horizontal/front`). For a member of a
-    compound (`B1/pivot.left`), `of` is the name of the compound's link (`B1/pivot`).
+    `name` is the address of this instance (`B1/front`). `drawn` is the address of the link in the description (`horizontal/front`). For a
+    member of a compound (`B1/pivot.left`), `of` is the compound's link (`B1/pivot`).
     """
 
     name: str
@@ -151,8 +151,8 @@ class PlacedSuperelement:
     def welds(self) -> Iterator[PlacedLink]:
         """Yield joints from the body of the first port to the body of each other port, for the ideal model.
 
-        A joint is rigid, except for degrees of freedom that a link with two ports specifies as free. Another port on the body of the first
-        port has no joint.
+        A joint is rigid, except for degrees of freedom that a link with two ports specifies as free. A further port on the body of the
+        first port gets no joint.
         """
         first, *others = self.ports
         free = self.link.free or ()
@@ -208,7 +208,7 @@ class Assembly:
 
     @cached_property
     def pushes(self) -> Mapping[str, tuple[str, Array]]:
-        """Input name and wrench (..., 6) per unit of input of each force actuator, by link; the polarity in a circuit sets the sign."""
+        """Input name, and wrench (..., 6) per unit of this input, by link of a force actuator; the polarity in a circuit sets the sign."""
         known = {link: each for link, each in self.circuits.items() if each[0] in self.thrusts}
         return {link: (name, sign * actuator_of(self.links[link].part).wrench) for link, (name, sign) in known.items()}
 
@@ -344,7 +344,7 @@ def _assembly(key: IdentityKey) -> Assembly:
 
 
 def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors for links without a position, or with two.
+    """Return errors for links without a position, or with two positions.
 
     >>> print(*place_findings(Mechanism("", links={"strut": Link(("ground", "platform"), "wire", end=(0.0, 0.0, 0.1))})))
     links.strut: from missing. Specify both from and to, or at and along.
@@ -393,7 +393,7 @@ def _port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterato
     ports, known = ports_of(parts[link.part]), isinstance(link.joins, Mapping)
     example = ", ".join(f'{name} = "{body}"' for name, body in zip(ports, itertools.cycle((GROUND, PLATFORM)), strict=False))
     if known and not ports:
-        yield Finding(f"{where}.joins", f'part "{link.part}" has no ports', f'Use its two bodies: joins = ["{GROUND}", "{PLATFORM}"]')
+        yield Finding(f"{where}.joins", f'part "{link.part}" has no ports', f'Use two bodies: joins = ["{GROUND}", "{PLATFORM}"]')
     elif ports and (not known or set(link.joins) != set(ports)):
         found = f"got {', '.join(link.joins)}" if known else "got no ports"
         yield Finding(

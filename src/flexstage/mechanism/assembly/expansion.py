@@ -51,10 +51,10 @@ class Expansion:
 def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """Compute all expansion coefficients; `ground` names the ground's material (default: `ground_of`; `none`: no expansion).
 
-    A body has the material of its heaviest solid; without solids, the common material of its links. Compliance matrices expand like the
-    drawn parts that they replace. Expansion is neglected for compliance matrices that replace no part, ideal joints, springs, shear piezos
-    and amplified actuators. Raises `DesignError` with a list of all materials and stacks without a coefficient and all bodies of unknown
-    material.
+    A body has the material of its heaviest solid; a body without solids has the common material of its links. Compliance matrices expand
+    like the drawn parts that they replace. Expansion is neglected for compliance matrices that replace no part, ideal joints, springs,
+    shear piezos and amplified actuators. Raises `DesignError` with a list of all materials and stacks without a coefficient and all bodies
+    of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = expansion(double_triangle(), ground="steel")
@@ -89,8 +89,8 @@ def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
 def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
     """Return the ground's material: `asked` (`none`: no expansion), else as in the description, else the material of parts on the ground.
 
-    The parts on the ground are its outlines or, without outlines, its links; they must all have the same material. Raises `DesignError` if
-    their materials differ, or without any material.
+    The parts on the ground are the outlines of the ground or, without outlines, the links on the ground; they must all have the same
+    material. Raises `DesignError` if their materials differ, or if they have no material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ground_of(double_triangle())

@@ -138,7 +138,7 @@ def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Arra
 
 
 def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Array, Array]:
-    """Compute the matrices (..., 6, n) that give the twists of a link's first and second body, at the link's centre in its frame.
+    """Compute the matrices (..., 6, n) that give the twists of a link's first and second body, at the link's centre in the link's frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -151,7 +151,7 @@ def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Arr
 
 
 def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
-    """Compute the matrix (..., 6, n) that gives a link's relative twist, second minus first body, at the link's centre in its frame.
+    """Compute the matrix (..., 6, n) that gives a link's relative twist, second minus first body, at the link's centre in the link's frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -164,7 +164,7 @@ def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
 
 
 def free_deformations(assembly: Assembly) -> Array:
-    """Compute the free deformations (..., 6 L, n) of all links for unit strokes, in the links' frames.
+    """Compute the free deformations (..., 6 L, n) of all L links for n unit strokes, in the links' frames.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -47,7 +47,7 @@ def misalignment_of(overrides: Mapping[str, Any], copy: str) -> Misalignment:
 
 
 def misalign(frame: Frame, overrides: Mapping[str, Any], copy: str) -> Frame:
-    """Apply misalignment to the frame of an instance: shifted along its axes, rotated about its origin.
+    """Apply misalignment to the frame of an instance: the frame is shifted along its own axes and rotated about its origin.
 
     >>> at = Frame(np.eye(3), np.zeros(3))
     >>> misalign(at, {"B2.rotation.z": 0.5 * np.pi}, "B2").direction(np.array([1.0, 0.0, 0.0])).round(12).tolist()

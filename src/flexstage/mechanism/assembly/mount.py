@@ -53,12 +53,14 @@ def mount(
 ) -> Mechanism:
     """Return the stage with another stage, `carried`, mounted on its body `on`. The body `on` replaces the ground of `carried`.
 
-    Bodies, links, units, instances, parts, gauges and loads of the carried stage get the names `name/...`; numbers do not change.
-    Overrides, tags and temperatures of the carried stage are kept; if `on` is the ground, so is the material of the carried ground. Other
-    properties of the carried stage as a whole (gravity, damping, requirements, envelope, formulas) are dropped. If `platform`, the carried
-    stage's platform becomes the platform of the result (default: true if the stage has no body `platform`).
+    Bodies, links, units, instances, parts, gauges and loads of the carried stage get the names `name/...`; positions and directions are
+    converted to the frame of `stage`. Overrides, tags and temperatures of the carried stage are kept; if `on` is the ground, the material
+    of the carried ground is kept too. Other properties of the carried stage as a whole (gravity, damping, requirements, envelope, formulas)
+    are dropped. If `platform` is true, the carried stage's platform becomes the platform of the result. The default is true if `stage` has
+    no body `platform`.
 
-    Raises `DesignError` for name clashes, an unknown body, a mirrored pose, or different expansion or temperature of a common ground.
+    Raises `DesignError` for name clashes, an unknown body, a mirrored pose, or if the two stages specify different materials or
+    temperatures for a ground that they share.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> both = mount(parallelogram(), "fine", parallelogram(), on="platform")
@@ -100,7 +102,7 @@ def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, po
     placed = (*stage.placements, *stage.gauges, *stage.stops)
     taken = {*stage.bodies, *stage.units, *stage.links, *(copy for key in placed for copy in copy_names(key))}
     if name in taken:
-        yield Finding(where, "the name is in use", "Use another name for the mounted stage: it becomes the prefix of all its names")
+        yield Finding(where, "the name is in use", "Use another name: it becomes the prefix of all names of the mounted stage")
     if pose.mirror is not None:
         yield Finding(f"{where}.pose.mirror", "a whole stage cannot be mirrored", "Mirror the units in the file of the mounted stage")
     known = {GROUND, *placed_bodies(stage)}
@@ -109,7 +111,7 @@ def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, po
     if _is_on_ground(stage, on):
         yield from _ground_findings(stage, name, carried)
     if on in {body for unit in drawn_units(carried).values() for body in unit.bodies}:
-        yield Finding(f"{where}.on", f'a unit of the mounted stage also has a body "{on}"', "Rename one of them")
+        yield Finding(f"{where}.on", f'a unit of the mounted stage also has a body "{on}"', "Rename one of the two bodies")
 
 
 def _is_on_ground(stage: Mechanism, on: str) -> bool:
@@ -132,11 +134,11 @@ def _ground_findings(stage: Mechanism, name: str, carried: Mechanism) -> Iterato
     """Errors for different specifications of a common ground."""
     mine, other = stage.ground, _ground(name, carried)
     if mine and other and not _agree(stage.materials.get(mine, mine), carried.materials.get(carried.ground or "", other)):
-        what = f'different ground materials (got "{other}" in the mounted stage, "{mine}" in this one)'
+        what = f'different ground materials (got "{other}" in the mounted stage, "{mine}" in this stage)'
         yield Finding(f"stages.{name}", what, f'Specify the material in this design: ground = "{mine}"; "{NOT_GROWING}" means no expansion')
     warm, warmer = (_temperatures(each).get(GROUND) for each in (stage, carried))
     if warm is not None and warmer is not None and not np.array_equal(warm, warmer):
-        what = f"different ground temperatures (got {warmer:g} K in the mounted stage, {warm:g} K in this one)"
+        what = f"different ground temperatures (got {warmer:g} K in the mounted stage, {warm:g} K in this stage)"
         yield Finding(f"stages.{name}", what, f'Specify the temperature in this design: temperatures.ground = "{warm:g} K"')
 
 

@@ -54,9 +54,9 @@ class Polar(Description):
     """Polar pattern: instances at equal steps on a circle around the stage's z axis.
 
     `first` is the *position angle* of the first instance, from x towards y. `facing` is the direction of each instance's x axis, which is
-    then rotated by `turn` about z. Each instance's z axis is parallel to the stage's z axis; with `InstanceOrientation.AXIS`, x is parallel
-    to it, and z points inward. `step` is the angle between instances (default: equal division of a full circle). `mirror` is the normal of
-    a mirror plane through the stage's origin; all instances are then mirror images.
+    then rotated by `turn` about z. Each instance's z axis is parallel to the stage's z axis. With `InstanceOrientation.AXIS`, x is instead
+    parallel to the stage's z axis, and z points inward. `step` is the angle between instances (default: equal division of a full circle).
+    If `mirror` is specified, all instances are mirrored at the plane through the stage's origin that has this normal.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]
@@ -70,10 +70,10 @@ class Polar(Description):
 
 @dataclass(frozen=True, eq=False)
 class Pose(Description):
-    """Pose of a single instance: origin `at`, x axis `along`, z axis `up` (perpendicular, of any length).
+    """Pose of a single instance: origin `at`, x axis `along`, z axis `up` (perpendicular to x, of any length).
 
-    Instead of `at` and `along`, two points of the x axis can be specified: the origin `start`, and an `end` in the direction of x. `mirror`
-    is the normal of a mirror plane through the stage's origin; the instance is then the mirror image.
+    Instead of `at` and `along`, two points of the x axis can be specified: the origin `start`, and an `end` in the direction of x. If
+    `mirror` is specified, the instance is mirrored at the plane through the stage's origin that has this normal.
     """
 
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""Checks of a description, with all errors.
+"""Checks of a description that collect all errors.
 
 `check` returns errors, `require_valid` raises them. For a batch, a check reports the index of the first failing design. Errors that depend
 on elasticity (a free internal mode) are reported by the models.
@@ -27,10 +27,10 @@ __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 
 @check_arguments
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return all errors of a description; none for a valid one.
+    """Return all errors of a description; an empty tuple if the description is valid.
 
     A check is skipped if the data that it needs contain errors. Numbers are compared only if they are finite; orientations are checked only
-    for valid parts. The graph is checked only if all names exist, matrix files only if all other checks pass.
+    for valid parts. The graph is checked only if all names exist, and matrix files only if all other checks pass.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
     ['bodies: unknown body "platform". Declare the moving platform under bodies.platform.']

@@ -1,4 +1,4 @@
-"""Checks of names: valid, unique, and existing."""
+"""Checks that names are valid and unique, and that the entries they name exist."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
         if not isinstance(inner(part), ThrustActuator):
             yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Remove this key, or use a force actuator")
         elif name in taken:
-            yield Finding(f"{where}.circuit", f'a link or an instance also has the name "{name}"', "Use a name of its own")
+            yield Finding(f"{where}.circuit", f'a link or an instance also has the name "{name}"', "Use a unique name")
         elif parts.setdefault(name, link.part) != link.part:
             what = f'different parts in one circuit (got "{link.part}", and "{parts[name]}" in another link)'
             yield Finding(f"{where}.circuit", what, "Use one part for all links of a circuit")

@@ -85,7 +85,7 @@ def _pattern(where: str, pattern: Pattern, *, has_up: bool = True) -> Iterator[F
     here, usual = f"{where}.pose", Pose()
     ends = [name for name, point in (("from", pattern.start), ("to", pattern.end)) if point is not None]
     if len(ends) == 1:
-        yield Finding(here, f"{ends[0]} without its counterpart", "Specify both from and to, or at and along")
+        yield Finding(here, f"{ends[0]} specified without the other end", "Specify both from and to, or at and along")
     elif ends and (pattern.at != usual.at or pattern.along != usual.along):
         yield Finding(here, "the ends and the position are both specified", "Specify either from and to, or at and along")
     up = None if not has_up and pattern.up == usual.up else pattern.up

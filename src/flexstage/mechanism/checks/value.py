@@ -1,4 +1,4 @@
-"""Checks of numbers: finite, within bounds, consistent batches."""
+"""Checks that numbers are finite and within bounds, and that batches have consistent sizes."""
 
 from __future__ import annotations
 

@@ -149,10 +149,11 @@ class Gap:
 def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = MappingProxyType({})) -> tuple[Gap, ...]:
     """Return overlaps, and gaps of at most `within` [m], between unconnected outlines, for the first design of a batch.
 
-    Two outlines form a pair if they belong to different bodies, to two links, or to a link and a body that it does not join. Round faces
-    are approximated with an error of at most `SAGITTA`. Imported shapes are omitted.
+    Two outlines form a pair if they belong to different bodies, to two links, or to a link and a body that the link does not join. Links
+    that join the same body form no pair if this body has no outline. Round faces are approximated with an error of at most `SAGITTA`.
+    Imported shapes are omitted.
 
-    Bodies are displaced by twists `moved` (6,) [m, rad], the translation and rotation vector at the reference point of each. A link moves
+    `moved` displaces bodies by twists (6,) [m, rad]: the translation and the rotation vector at the body's reference point. A link moves
     rigidly, by the mean of the twists of the bodies that it joins.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -40,7 +40,7 @@ class Outline:
         return np.broadcast_shapes(self.frame.position.shape[:-1], self.frame.rotation.shape[:-2], self.size.shape[:-1], corners)
 
     def reach(self, direction: Array) -> Array:
-        """Support function (...) [m]: the maximum of n . r for all points r of the outline; n (..., 3) is a unit `direction`.
+        """Return the support function [m]: the maximum of n . r for all points r of the outline; n (..., 3) is a unit `direction`.
 
         >>> box = Outline("box", Frame(np.eye(3), np.zeros(3)), np.array([2.0, 4.0, 6.0]))
         >>> float(box.reach(np.array([0.0, 1.0, 0.0])))

@@ -70,7 +70,7 @@ RESERVED = (TAGS, LIKE)
 """Keys that any table of a file may have although they are not fields."""
 
 BY_FIELD = ""
-"""Discriminating key of alternatives that differ in a field of the table; the alternative has the name of this field."""
+"""Marker for alternatives that are identified by a field in the table; the alternative has the name of this field."""
 
 _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Probe: (BY_FIELD, "body"),
@@ -228,7 +228,7 @@ class JoinsNode(Node):
         return self._node(value).child(value, name)
 
 
-OVERRIDES = OpenNode("Overrides by address: unit/link.field for all instances, instance/link.field for one.")
+OVERRIDES = OpenNode("Overrides by address: unit/link.field for all instances, instance/link.field for one instance.")
 
 
 @dataclass(frozen=True)
@@ -408,7 +408,7 @@ class UnionNode(Node):
 
 @dataclass(frozen=True)
 class FieldUnionNode(UnionNode):
-    """Object of one of several classes, identified by a field in the table; without such a field, the first class is used."""
+    """Object of one of several classes, identified by a field in the table; if no field identifies a class, the first is used."""
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """Return an object of the class whose field is in the table."""

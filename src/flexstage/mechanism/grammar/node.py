@@ -59,10 +59,10 @@ class EnoughError(Exception):
 
 @dataclass
 class Reader:
-    """Collected while a file is read: errors, tags by address, and sources of catalogue entries.
+    """Data collected while a file is read: errors, tags by address, and sources of catalogue entries.
 
-    If `tagged`, tables may have tags; otherwise, `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: no
-    formulas allowed). `formulas` contains the formulas that were read, by address. `bounds` contains the errors for numbers outside their
+    If `tagged`, tables may have tags; otherwise, `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: formulas
+    are not allowed). `formulas` contains the formulas that were read, by address. `bounds` contains the errors for numbers outside their
     bounds; they are reported when the description is checked.
     """
 
@@ -105,13 +105,13 @@ class Reader:
 
 @dataclass
 class Writer:
-    """Collected while a file is written: errors, and formulas by address. A value with a formula is written as the formula."""
+    """Data collected while a file is written: errors, and formulas by address. A value with a formula is written as the formula."""
 
     findings: list[Finding] = field(default_factory=list)
     formulas: Mapping[str, str] = field(default_factory=dict)
 
     def has_formula(self, where: str) -> bool:
-        """Whether a value or one of its members has a formula."""
+        """Return whether a value or one of its members has a formula."""
         return any(key == where or key.startswith(f"{where}.") for key in self.formulas)
 
     def write(self, node: Node, value: Any, where: str) -> Any:
@@ -601,7 +601,7 @@ class AmountNode(Node):
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Return the schema of a string with a unit, or a number."""
-        return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _WITH_UNIT}], "description": "with a unit, or in percent"}
+        return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _WITH_UNIT}], "description": "number with unit, or in percent"}
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ def advise_kind(word: str, known: Collection[str]) -> str:
 
 
 def advise_key(key: str, unused: Collection[str], known: Collection[str]) -> str:
-    """Return a hint for an unknown key: the key with this symbol, else the most similar names, first of `unused` keys.
+    """Return a hint for an unknown key: the key with this synonym, else similar names, `unused` keys first.
 
     >>> advise_key("E", {"young", "density"}, {"young", "density"}), advise_key("thicknes", {"section"}, {"section", "thickness"})
     ('Use young', 'Use thickness')

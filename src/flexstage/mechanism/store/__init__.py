@@ -42,7 +42,7 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     """Read a design file and return the description.
 
     Raises `DesignError` with all errors of the file; with `checked`, also with errors of the description (see `checks.check`). Relative
-    paths of imported solids and of parts' files are relative to the file's folder. The description has absolute paths.
+    paths to imported solids and to part files start at the folder of the design file. The returned description has absolute paths.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -86,8 +86,9 @@ def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[s
 def dumps(mechanism: Mechanism, comments: Mapping[str, str] | None = None) -> str:
     """Return the text of a description's design file.
 
-    Numbers are written as the shortest strings in display units that are read back to the same bits. `comments`, by address (`parts.neck`,
-    "" for the whole file), are written above tables and values. Raises `DesignError` for batches and complex numbers.
+    Numbers are written in display units, as the shortest strings that give the same bits when they are read. `comments` has a comment for
+    each address (`parts.neck`, or "" for the whole file), which is written above the table or value. Raises `DesignError` for a batch of
+    designs and for complex numbers.
 
     >>> print(dumps(Mechanism("empty"), {"": "Nothing yet."}), end="")
     # Nothing yet.

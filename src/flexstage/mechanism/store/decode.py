@@ -132,7 +132,7 @@ class _Files:
         path, here = (Path(self.where).parent / item.file).resolve(), Path(self.where).resolve()
         address = f"{STAGES}.{name}.file"
         if path in (here, *self.above):
-            what = "the stage would contain itself" if path == here else f"circular reference of this file and {item.file}"
+            what = "the stage would contain itself" if path == here else f"circular reference between this file and {item.file}"
             reader.refuse(address, what, "Use the file of another stage")
             return None
         try:

@@ -43,7 +43,7 @@ def tree_of(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def plain(node: Node, value: Any, where: str, formulas: Mapping[str, str] | None = None) -> Any:
-    """Encode a single value for a file, or its formula if it has one; raises `DesignError` if this is impossible.
+    """Encode a single value for a file, or its formula if it has one; raises `DesignError` if a file cannot contain the value.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.mechanism.grammar.node import NumberNode

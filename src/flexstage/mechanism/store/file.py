@@ -54,7 +54,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """Parse a TOML text; raises `DesignError` with line and column if invalid.
+    """Parse a TOML text; raises `DesignError` with line and column if the text is invalid.
 
     >>> parse_toml('name = "a"', "stage.toml")
     {'name': 'a'}

@@ -83,7 +83,7 @@ def _entries(name: str, where: str, above: tuple[Path, ...]) -> tuple[_Entries, 
     """Entries of an included file by address, with their file and text, and the errors of the file."""
     here, path = Path(where).resolve(), (Path(where).parent / name).resolve()
     if path in (here, *above):
-        what = f"{name} would include itself" if path == here else f"circular reference of this file and {name}"
+        what = f"{name} would include itself" if path == here else f"circular reference between this file and {name}"
         return {}, [Finding(INCLUDE, what, "Remove one include")]
     try:
         text = read_text(path)

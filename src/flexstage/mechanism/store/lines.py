@@ -50,7 +50,7 @@ def spot_of(finding: Finding, where: str) -> Spot:
 
 
 def line_of(address: str, lines: Mapping[str, int]) -> int | None:
-    """Return the line of an address. If the address has no line, use its nearest enclosing table or the table's first key; else `None`.
+    """Return the line of an address. Without a line, return the line of the nearest enclosing table or of its first key, or `None`.
 
     For a link of an instance, the line is that of the link in the unit.
 
@@ -88,7 +88,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
 
 
 def line_numbers(text: str) -> Mapping[str, int]:
-    r"""Return the line numbers of table headings, and of keys that begin a line, by address; of repeated headings, the first.
+    r"""Return the line numbers of table headings, and of keys that begin a line, by address; for a repeated heading, the first line.
 
     >>> dict(line_numbers("rate = 1\n[floor]\nx.y = 2"))
     {'rate': 1, 'floor': 2, 'floor.x.y': 3}

@@ -26,7 +26,7 @@ KEPT = "-drawn"
 
 @dataclass(frozen=True, eq=False)
 class ReplacementPart:
-    """Compliance matrix `given` that replaces the drawn part `given.replaces` in some `links`, named by their addresses."""
+    """Compliance matrix `given` that replaces the drawn part `given.replaces` in `links`, which contains the addresses of these links."""
 
     given: ComplianceMatrix
     links: tuple[str, ...]

@@ -30,7 +30,7 @@ HEADINGS: Mapping[str, str] = {
     "stops": "Stops: each lets its body move by `gap` along x of the instance, relative to the base.",
     "paths": "Load paths for requirements at large displacements, from the static equilibrium.",
     "temperatures": "Temperature changes since manufacture, by body; `all` is for all other bodies.",
-    "overrides": "Overrides: unit/link.field for all instances, instance/link.field for one.",
+    "overrides": "Overrides: unit/link.field for all instances, instance/link.field for one instance.",
     "requirements": "Requirements: evaluated first in every report.",
     "sources": "Sources of tags. A value without a tag is assumed.",
 }

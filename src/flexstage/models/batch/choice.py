@@ -1,8 +1,9 @@
-"""Platform frequencies: at each of them, the modes up to it reach a tenth of the static compliance in one more direction.
+"""Platform frequencies: up to each of these frequencies, the modes reach a tenth of the static compliance in one more direction.
 
 The platform twist in a mass-normalised mode is phi. The platform's static compliance is C = sum phi phi^T / omega^2. H(f) is the sum over
-the modes up to frequency f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed
-`THRESHOLD`. The eigenvalues of H do not depend on units, on the reference point, on the basis of repeated modes, or on modes above f.
+the modes up to frequency f of C^(-1/2) phi phi^T C^(-1/2) / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H
+exceed `THRESHOLD`. The eigenvalues of H do not depend on units, on the reference point, on the basis of repeated modes, or on modes above
+f.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 THRESHOLD = 0.1
-"""Fraction of the static compliance in some direction that the modes must exceed. Most stages give equal results from 0.1 to 0.7."""
+"""Fraction of the static compliance that the modes must exceed in a direction. Most stages give equal results from 0.1 to 0.7."""
 
 MARGIN = 5e-3
-"""Required distance of the eigenvalues of H from the threshold for modes by iteration, whose errors change H by 2e-3 at most."""
+"""Required distance of the eigenvalues of H from the threshold. Errors of modes from the iteration change H by 2e-3 at most."""
 
 _LOCKED = 1e-12
 """Relative square root of a compliance below which a direction is locked, with rotations taken over 0.1 m."""
@@ -38,7 +39,7 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class ModeSelection:
-    """Selected modes of b designs: `mask` (b, k) marks the platform modes; `exact` (b,) is true if their number is as requested.
+    """Selected modes of b designs: `mask` (b, k) marks the platform modes; `exact` (b,) is true if their number is the requested number.
 
     If only some modes of a cluster are platform modes, the modes with the largest participation are selected.
     """
@@ -82,7 +83,7 @@ def compliance_root(model: LinearModel, rows: Array) -> Array:
 
 
 def participation(root: Array, motions: Array, values: Array) -> Array:
-    """Compute the participation p = C^-1/2 phi / omega (..., 6, k) of k modes in the compliance C = R^T R; `root` is R (..., r, 6).
+    """Compute the participation p = C^(-1/2) phi / omega (..., 6, k) of k modes in the compliance C = R^T R; `root` is R (..., r, 6).
 
     `motions` (..., 6, k) are the platform twists phi, `values` (..., k) the eigenvalues omega^2. The squared length of the column p of a
     mode is the mode's fraction of the compliance along the mode's own motion. Over all modes, the products p p^T add up to the unit matrix.

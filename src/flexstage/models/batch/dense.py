@@ -28,7 +28,7 @@ class AllModes:
 
 
 def all_modes(stiffness: Array, inertia: Array, rows: Array, cluster: float) -> AllModes:
-    """Compute all modes of one design; `rows` (6, n) maps motions to the platform twist, `cluster` is the relative gap of repeated modes.
+    """Compute all modes of one design; `rows` (6, n) gives the platform twist, `cluster` is the relative gap of repeated modes.
 
     >>> all_modes(np.diag([4.0, 1.0]), np.eye(2), np.eye(6, 2), 1e-6).values.tolist()
     [1.0, 4.0]

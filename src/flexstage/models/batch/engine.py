@@ -1,7 +1,8 @@
 """Platform frequencies of many designs at once.
 
 The iteration of the designs (`family`) is in C (`kernel`). It starts from the modes of the nominal design, and uses the elimination order
-of the bodies (`graph`). Designs without a proven result are solved by dense matrices (`dense`); without a kernel, all designs are.
+of the bodies (`graph`). Designs without a proven result are solved by dense matrices (`dense`). If there is no kernel, all designs are
+solved by dense matrices.
 
 Every design is computed individually: its result does not depend on other designs.
 """
@@ -76,11 +77,11 @@ Ranges = tuple[Array, Array]
 
 @one_thread
 def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None = None, ranges: Ranges | None = None) -> Plan:
-    """Plan a family of designs, which differ in the numbers at the addresses.
+    """Plan a family of designs that differ in the numbers at the `addresses`.
 
-    With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. Within the ranges,
-    computing the input of a design is then faster than solving the design. Without a fit, or outside the ranges, the input is computed from
-    the description.
+    If `ranges` are specified, the kernel's input is fitted once by polynomials, which takes seconds. The fit is used if its error is at
+    most 1e-10. Within the ranges, computing the input of a design is then faster than solving the design. Without a fit, or outside the
+    ranges, the input is computed from the description.
 
     Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.
 
@@ -139,7 +140,8 @@ def _shift(values: Array) -> float:
 def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
     """Compute the platform frequencies of designs given by the numbers (b, P) at the plan's addresses.
 
-    The frequencies agree with the dense solution of `models.lumped` within a relative error of 1e-6; this is proven for each design.
+    The frequencies agree with the dense solution of `models.lumped` within a relative error of 1e-6. This accuracy is proven for each
+    design.
 
     An invalid design has the status `NONE` and does not affect the other designs. A design is invalid if it has non-finite numbers, a
     stiffness that is not positive, or outlines without a mass.

@@ -21,10 +21,10 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.batch.graph import SHAPES, Topology, distinct_links, topology
 
 INERTIA_ENTRIES = np.array([0, 1, 2, 0, 3, 4, 4, 5, 5, 5]), np.array([0, 5, 3, 4, 3, 3, 4, 3, 4, 5])
-"""Positions of an inertia's kernel numbers in its 6x6 matrix."""
+"""Rows and columns of the 6x6 inertia matrix from which the kernel's ten inertia numbers are taken."""
 
 Draw = Callable[[tuple[Array, ...]], Mechanism]
-"""Function that returns a description for given numbers, each an array (...)."""
+"""Function that returns the description for given numbers; each number is an array (...)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class Family:
 
 
 def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
-    """Build the family of designs that differ in the numbers at the addresses; raises `DesignError` for unknown addresses.
+    """Build the family of designs that differ in the numbers at the `addresses`; raises `DesignError` for unknown addresses.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> family(double_triangle(), ("parts.neck.thickness",)).nominal.round(6).tolist()
@@ -93,7 +93,7 @@ def _family(plain: Mechanism, names: tuple[str, ...], nominal: Array) -> Family:
 
 
 def describe(family_: Family, values: Array) -> Mechanism:
-    """Return a single description, with arrays, of all designs; `values` (b, P) are their numbers.
+    """Return one description of all designs, with arrays as values; `values` (b, P) are the numbers of the designs.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = family(double_triangle(), ("parts.neck.thickness",))

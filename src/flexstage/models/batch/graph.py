@@ -16,7 +16,7 @@ from flexstage.mechanism.assembly.incidence import layout
 from flexstage.mechanism.mechanism import GROUND
 
 GROUNDED = -1
-"""Number of the ground among the bodies."""
+"""Body number of the ground."""
 
 SHAPES: Mapping[str, tuple[int, ...]] = {
     "stiffness": (6, 6),
@@ -29,8 +29,8 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
 """Kinds of numbers of a design in the kernel input, with their shapes, in this order:
 
 - stiffness and mass of each distinct part in its link frame;
-- axes of each link in the stage, and arms from it to points of its two bodies;
-- mass, moments of mass and moments of inertia (xx, yx, yy, zx, zy, zz) of each body about that point.
+- axes of each link in the stage frame, and arms from the link to the reference points of its two bodies;
+- mass, moments of mass and moments of inertia (xx, yx, yy, zx, zy, zz) of each body about its reference point.
 """
 
 
@@ -75,7 +75,7 @@ class Topology:
 
 
 def distinct_links(assembly: Assembly) -> dict[tuple[int, int], PlacedLink]:
-    """Return the first link of each distinct pair of part and material."""
+    """Return the first link with each distinct pair of part and material."""
     links: dict[tuple[int, int], PlacedLink] = {}
     for link in assembly.links.values():
         links.setdefault((id(link.part), id(link.material)), link)

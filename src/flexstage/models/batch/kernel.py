@@ -1,7 +1,7 @@
-"""Compiled iteration in C, for several designs per vector register. It is used if it was built at installation.
+"""Compiled iteration in C, for several designs per vector register. The kernel is used if it was built at installation.
 
 Without the kernel, dense matrices give the same results. `FLEXSTAGE_KERNEL=off` disables the kernel. `FLEXSTAGE_KERNEL=avx2` selects
-vectors of four numbers, also on processors with vectors of eight.
+vectors of four numbers, even on processors with vectors of eight numbers.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def kernel_name() -> str:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Start values of the iteration: inertial forces (six for each body, m) of m nominal modes, and a `shift` between two eigenvalues.
+    """Start values of the iteration: inertial forces `force` (six per body, m) of m nominal modes, and a `shift` between two eigenvalues.
 
     `needed` is the number of modes that are computed one by one.
     """
@@ -97,7 +97,7 @@ class Job:
 def solve_designs(library: ctypes.CDLL, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> tuple[Array, Array]:
     """Compute the ascending platform eigenvalues (b, k) of b designs from their `numbers` (numbers, b).
 
-    Also returns a mask (b,) of the designs whose result is proven to be correct.
+    Also returns a mask (b,) of the designs with a result that is proven to be correct.
     """
     job, count = kernel_job(library.flexstage_width(), tables, numbers, start, choice), numbers.shape[1]
     if library.flexstage_modes(ctypes.byref(job.task)):

@@ -1,8 +1,9 @@
 """Polynomial fit of the kernel input over specified ranges: fitted once, checked, then evaluated for any number of designs.
 
-Terms are products of Chebyshev polynomials of the variables on which a number depends. The degree in each variable is found along two lines
-through the ranges. Terms of high total degree are dropped if the error at the validation designs remains small. The coefficients are fitted
-by least squares at random points. Functions that are not smooth are not fitted, e.g. outlines whose overlaps change over the ranges.
+Terms are products of Chebyshev polynomials of the variables on which a number depends. The degree in each variable is determined from
+function values along two lines through the ranges. Terms of high total degree are dropped if the error at the validation designs remains
+small. The coefficients are fitted by least squares at random points. Numbers that are not smooth functions of the variables are not fitted,
+for example if overlaps of outlines change over the ranges.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ class Surface:
     """Polynomial fit of the kernel input of a family for values from `low` to `high` (P,).
 
     `fixed` (numbers,) is the kernel input of the nominal design, used for numbers without a fit. `error` is the largest error at random
-    designs, relative to the scale of each number. Numbers below the diagonals of symmetric matrices are not fitted; they have the values in
-    `fixed`.
+    designs, relative to the scale of each number. Numbers below the diagonals of symmetric matrices are not fitted; the surface returns
+    their values in `fixed`.
     """
 
     low: Array

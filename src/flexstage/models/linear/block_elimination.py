@@ -48,8 +48,8 @@ class _Solution:
 class ConstraintSolution:
     """Solution of the constraints: the motions of N coordinates that satisfy them.
 
-    `last` is the last elimination, of the platform's coordinates and the strokes. `idle` contains a free internal mode (a row (N,)) for
-    each unconstrained coordinate. `redundant` lists the indices of the constraints in each state of self-stress.
+    `last` is the last elimination, of the platform's coordinates and the strokes. `idle` contains one free internal mode, a row (N,), for
+    each unconstrained coordinate. `redundant` contains, for each state of self-stress, the indices of its constraints.
     """
 
     last: Elimination
@@ -58,7 +58,7 @@ class ConstraintSolution:
 
 
 def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> ConstraintSolution:
-    """Eliminate constraints (one row (1, N) each) on the twists of `bodies` bodies, the platform first, and on the strokes.
+    """Eliminate constraints, each a row (1, N), on the twists of `bodies` bodies (the platform first) and on the strokes.
 
     `scale` (N,) makes the coordinates comparable.
 

@@ -1,7 +1,7 @@
 """Blockage: the locked DOFs that prevent a stroke, and the DOFs to free.
 
-A stroke is blocked if forces in locked DOFs are in equilibrium on all bodies and do work only on the stroke. Usually several sets of such
-forces exist. The set with the least sum of magnitudes (a linear programme) has few forces; their links are the result.
+A stroke is blocked if there are forces in locked DOFs that are in equilibrium on all bodies and do work only on the stroke. Usually several
+sets of such forces exist. The set with the least sum of magnitudes (a linear programme) has few forces; their links are the result.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ class Blockage:
     `against` and `free` contain the names of DOFs (`link.freedom`). If `together` is false, it is sufficient to free any one DOF of `free`;
     otherwise, all must be freed.
 
-    `ends` (ground or platform) lack a hinge: the actuator joins them directly, and its own locked DOFs prevent its stroke.
+    At the `ends` (ground or platform), a hinge is missing: the actuator is joined directly to these bodies, and its own locked DOFs prevent
+    its stroke.
     """
 
     against: tuple[str, ...]

@@ -162,7 +162,7 @@ def see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
 
 
 def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:
-    """Compute the deformation (..., r, m) of each stroke actuator's link per unit of each input.
+    """Compute, for each stroke actuator's link, the deformation (..., r, m) per unit of each input.
 
     `deformations` (..., r) contains, by link, the deformation per unit stroke. Columns of other inputs are zero.
 

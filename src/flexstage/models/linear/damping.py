@@ -12,7 +12,7 @@ from flexstage.models.linear.model import LinearModel
 
 
 def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
-    """Return the requested damping law, else the model's law. Raises `DesignError` if both are missing: there is no default.
+    """Return the requested damping law or, without a request, the model's law; raises `DesignError` if both are missing.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -31,7 +31,7 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
 
 
 def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Compute the damping ratio zeta_r (..., k) of each mode: of the damping law, plus phi^T D phi / (2 omega_r) for the dampers D.
+    """Compute the damping ratio zeta_r (..., k) of each mode: the damping law's ratio plus phi^T D phi / (2 omega_r) for the dampers D.
 
     The damper term neglects the coupling of modes by dampers, which `transfer` and `state_space` include. For modes at 0 Hz, the ratio is
     zero.
@@ -43,7 +43,7 @@ def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
 def law_rates(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     """Compute 2 zeta_r omega_r (..., k) [1/s] of each mode for a damping law.
 
-    For a mode at 0 Hz, the result is the mass factor of Rayleigh damping, and zero for other laws.
+    For a mode at 0 Hz, the result is the mass factor for Rayleigh damping, and zero for the other laws.
     """
     rates = 2.0 * law_ratios(model, solved, damping) * np.sqrt(solved.values)
     own = np.asarray(damping.mass_factor)[..., None] if isinstance(damping, RayleighDamping) else 0.0

@@ -18,7 +18,7 @@ _CLUSTER = 1e-5
 _BELOW = 1e-2
 """Eigenvalue of grounded floating motions over the lowest elastic one, so that they are the first."""
 WIDE = 128
-"""Number of coordinates above which triangular solutions one by one are faster than numpy's solution for all matrices at once."""
+"""Number of coordinates above which solving triangular systems one by one is faster than numpy's solution of all systems at once."""
 ALL_MODES = 900
 """Number of coordinates up to which all modes of a sparse model are computed, even if only the lowest are requested."""
 
@@ -72,7 +72,7 @@ def _solve(model: LinearModel) -> Eigen:
 
 
 def eigenvalues(model: LinearModel) -> Array:
-    """Compute only the ascending eigenvalues (..., k) of `eigen`, which is faster.
+    """Compute the same ascending eigenvalues (..., k) as `eigen`, but without shapes, which is faster.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -89,7 +89,7 @@ def eigenvalues(model: LinearModel) -> Array:
 def lowest_modes(model: LinearModel) -> Eigen:
     """Compute all modes; for a large sparse model, only about 30 of the lowest modes.
 
-    For a large model, the highest cluster of computed modes is omitted, because the cluster may be incomplete.
+    For a large model, the highest cluster of computed modes is omitted, because some of its modes may be missing.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

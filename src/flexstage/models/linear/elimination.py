@@ -1,9 +1,9 @@
 """Exact elimination of linear constraints by a pivoted partition of the coordinates.
 
-For constraints A z = 0 of rank r, the independent coordinates z_i determine r dependent ones: z_d = -A_d^-1 A_i z_i.
+For constraints A z = 0 of rank r, the independent coordinates z_i determine the r dependent coordinates z_d = -A_d^-1 A_i z_i.
 
-Pivots are chosen by real parts, so that complex steps remain valid. `eliminate` chooses the pivots from the first design of a batch,
-`eliminate_each` from every design.
+Pivots are chosen by real parts, so that complex steps remain valid. `eliminate` chooses the pivots of all designs from the first design of
+a batch; `eliminate_each` chooses them for each design.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PREFERENCE = 1e-6
 class Elimination:
     """Solution of the constraints: z = `basis` z_i with the f independent coordinates z_i; `basis` (..., N, f).
 
-    `independent` and `dependent` are indices of coordinates, `rows` the constraints that determine the dependent ones.
+    `independent` and `dependent` are indices of coordinates, `rows` are the constraints that determine the dependent coordinates.
     """
 
     basis: Array
@@ -74,7 +74,7 @@ def _require_served(constraints: Array, scale: Array, choice: _Choice) -> None:
 
 def _require_none(others: Array) -> None:
     if len(others):
-        raise unlike(int(others[0]), "differs from the first design in which locked degrees of freedom depend on each other")
+        raise unlike(int(others[0]), "differs from the first design in the dependence between locked degrees of freedom")
 
 
 def unlike(number: int, what: str) -> DesignError:
@@ -85,7 +85,7 @@ def unlike(number: int, what: str) -> DesignError:
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
     """Eliminate like `eliminate`, but with separate pivots for each design of a batch. Results equal single-design results bit for bit.
 
-    `scale` is (..., N). Outside `keep`, designs may have other independent coordinates; the indices of the first design are returned.
+    `scale` is (..., N). The designs may differ in the independent coordinates outside `keep`; the indices of the first design are returned.
 
     Raises `DesignError` if designs differ in the independent coordinates within `keep`, or in the number of independent coordinates.
 
@@ -126,7 +126,7 @@ def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], k
         theirs = _freedom(part, keep)
         if theirs != mine:
             counts = [f"{len(kept)} of the platform and {others} others" for kept, others in (theirs, mine)]
-            other = f"{counts[0]} instead of {counts[1]}" if counts[0] != counts[1] else f"also {counts[1]}, but different ones"
+            other = f"{counts[0]} instead of {counts[1]}" if counts[0] != counts[1] else f"also {counts[1]}, but in other coordinates"
             raise unlike(numbers[0], f"differs from the first design in its motions: {other}")
 
 

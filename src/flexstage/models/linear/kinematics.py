@@ -21,7 +21,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True)
 class FreeInternalMode:
-    """Free internal mode, independent of strokes and platform (a spinning strut): `bodies` move and `links` deform."""
+    """Free internal mode, independent of strokes and platform (for example a spinning strut): `bodies` move and `links` deform."""
 
     TABLE: ClassVar[Layout] = Layout("Free internal modes (zero stiffness)", "bodies links")
 
@@ -47,7 +47,7 @@ class Kinematics(Result):
     `bodies` (..., N, f) is the motion of all body coordinates per unit xi. `strains` (..., 6, f) is the deformation of each link in the
     link frame per unit xi; only free DOFs and strokes contribute. `free` contains the free DOFs of each link. `length` (...) is the scale
     that makes rotations comparable with translations. `blocked` contains the blockage of each immobile actuator. `gauge_units` are the
-    units of the readings (absent: m), `sums` the weights of the gauges in each sum of gauges.
+    units of the readings (if absent, m); `sums` contains the weights of the gauges in each sum of gauges.
 
     `actuators` are the stroke actuators, `thrusts` the force actuators, which do not determine motion. `thrust` (..., f, t) is V^T W, the
     generalised force on xi per unit of a force actuator's input (`thrust_inputs`: N or A).
@@ -107,10 +107,10 @@ class Kinematics(Result):
         """V^T W: generalised force on the platform's ideal motions per unit input of each force actuator, by virtual work.
 
         With six DOFs, V is the identity, and the result is the whole wrench at the platform's reference point. W is R_f^T times the force
-        per unit input, where R_f = d(elongation)/dx of the force actuators.
+        per unit input, where R_f = d(elongation)/dx for the force actuators.
 
-        With fewer DOFs, only the work of W in the ideal motions is known; locked DOFs carry the other components. Each row is the force
-        conjugate to one platform coordinate. Positive inputs push the faces of the actuator apart.
+        With fewer DOFs, only the work of W in the ideal motions is known; locked DOFs carry the other components of W. Each row is the
+        force conjugate to one platform coordinate. Positive inputs push the faces of the actuator apart.
         """
         rows = [COMPONENTS.index(name) for name in self.coordinates]
         units = ratio_units(tuple(WRENCH_UNITS[row] for row in rows), self.thrust_inputs)
@@ -118,7 +118,7 @@ class Kinematics(Result):
 
     @property
     def commanded(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Platform coordinates that strokes and forces can command independently of all others (first design).
+        """Platform coordinates that strokes and forces can command independently of all other coordinates, in the first design.
 
         If R_a and V^T W together have rank f, all platform coordinates are included. Without force actuators, only coordinates that the
         strokes determine are included.
@@ -167,7 +167,7 @@ class Kinematics(Result):
 
     @property
     def telling(self) -> tuple[str, ...]:
-        """Gauges and sums of gauges that determine the pose: all except the members of sums."""
+        """Gauges and sums of gauges that determine the pose: all except gauges that are members of sums."""
         taken = {member for members in self.sums.values() for member in members}
         return tuple(name for name in self.gauges if name not in taken)
 
@@ -223,7 +223,7 @@ class Kinematics(Result):
     def _advice(self) -> str:
         """Hint for strokes that do not determine the platform."""
         if not self.thrusts:
-            return "Add actuators, or lock degrees of freedom of links"
+            return "Add actuators, or lock more degrees of freedom of the links"
         return f"Forces ({', '.join(self.thrusts)}) determine no motion: compute the displacement with the elastic model"
 
     @property

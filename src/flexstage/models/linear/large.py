@@ -1,8 +1,9 @@
 """Sparse stiffness and inertia of large stages: factors, exact solutions and the lowest modes.
 
-The stiffness is K = G^T k G, with G the strains of all links per coordinate. In a long chain, rounding in K gives rigid motions of a part a
-spurious energy. Solutions are therefore refined with forces computed from the strains. If the refinement does not converge, strains and
-motions are both unknowns, and rigid motions are exact. This is the augmented system of weighted least squares (Bjorck, BIT 7, 1, 1967).
+The stiffness is K = G^T k G, with G the strains of all links per coordinate. In a long chain of links, rounding errors in K give rigid
+motions of a section of the chain a spurious energy. Solutions are therefore refined with forces computed from the strains. If the
+refinement does not converge, the equations are solved with both strains and motions as unknowns. Rigid motions are then exact. These
+equations are the augmented system of weighted least squares (Bjorck, BIT 7, 1, 1967).
 """
 
 from __future__ import annotations
@@ -223,7 +224,7 @@ def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Arra
 
 
 def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:
-    """Return whether K is certainly definite: every 6x6 link stiffness is positive definite, and links connect every body to the ground.
+    """Return whether K is surely positive definite: all 6x6 link stiffnesses are positive definite, and links join all bodies to ground.
 
     `joins` are the pairs of joined bodies, by number; the ground has the number `bodies`.
     """
@@ -260,8 +261,8 @@ def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Arr
 def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
     """Compute the smallest eigenvalues mu (k,) of T x = mu K x, ascending, and shapes (n, k) with x^T K x = 1; `taken` is T.
 
-    Returns fewer than `count` values if further eigenvalues are too close together to converge, for example many near zero. The start
-    vector is constant.
+    Returns fewer than `count` values if the other eigenvalues are too close together to converge, for example many eigenvalues near zero.
+    The start vector is constant.
     """
     size = taken.rows.shape[1]
     stiffness, inverse = (
@@ -274,6 +275,6 @@ def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, A
     except scipy.sparse.linalg.ArpackNoConvergence as error:
         result = error.eigenvectors
         if not result.shape[1]:
-            raise refuse("stage", "no eigenvalue converges to the lowest load factor", "Analyse its loads one by one") from None
+            raise refuse("stage", "the iteration for the lowest load factor does not converge", "Analyse the loads one by one") from None
     values, turn = scipy.linalg.eigh(result.T @ (taken @ result), result.T @ (solver.stiffness @ result))
     return cast("Array", values), result @ turn

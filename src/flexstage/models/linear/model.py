@@ -21,7 +21,7 @@ from flexstage.models.linear.large import Quadratic, Solver
 _DENSE = 3000
 """Number of coordinates up to which a sparse model makes dense matrices: all its modes take a minute."""
 WIDE = 128
-"""Number of coordinates above which each part is assembled only over its own coordinates. Below, one full product is faster."""
+"""Number of coordinates above which each part is assembled only over its own coordinates. Below this number, a full product is faster."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,7 @@ class LinearModel(InNotebook, CheckedFields):
       sum G^T k imposed.
     - `output` C (..., p, n) and `feedthrough` D_u (..., p, m).
     - `rigid` (..., n, 6): motion of all coordinates when the stage moves rigidly with the ground, per unit ground twist at the platform's
-      reference point; `rigid_output` (..., p, 6): outputs of the same motion.
+      reference point; `rigid_output` (..., p, 6): outputs due to this rigid motion.
     - `base_inertia` (..., n, 6): inertial force per unit ground acceleration.
     - `inertial` M_u (..., n, m): inertial forces due to the motions that inputs impose (default: zero).
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
@@ -62,15 +62,16 @@ class LinearModel(InNotebook, CheckedFields):
     parts, by the name of the stiffness contribution. Damping matrices multiply the rates of the first d elastic deformations (G q minus the
     imposed deformation). These dampers act in addition to the model's damping law. Link forces do not include forces of dampers.
 
-    `idle` names removed coordinates, which have no stiffness (free internal modes). The kept coordinates are M-orthogonal to the removed
-    modes, so that frequencies and shapes do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the k
-    free internal modes, `idle_inertia` (..., k, 6) their inertial forces per unit ground acceleration.
+    `idle` contains the names of removed coordinates, which have no stiffness (free internal modes). The kept coordinates are M-orthogonal
+    to the removed modes, so that frequencies and shapes do not depend on the choice of coordinates. `idle_output` (..., p, k) are the
+    outputs of the k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per unit ground acceleration.
 
-    `floating` (n, k) are the mass-normalised motions of a force-driven platform that have no stiffness (default: none). If there are such
-    motions, K is singular, and `solve` returns the elastic displacement without momentum in the floating motions (inertia relief).
+    `floating` (n, k) are mass-normalised motions of the platform that have no stiffness and are driven by forces (default: none). If
+    floating motions exist, K is singular, and `solve` returns the elastic displacement that has no momentum in the floating motions
+    (inertia relief).
 
-    The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense
-    matrix; K and M are assembled on request.
+    For a large stage, `is_sparse` is true: operators and outputs are sparse (see `flexstage.base.sparse`). `solve` and `momenta` use no
+    dense matrix; K and M are assembled only on request.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.lumped(stage)")
@@ -141,7 +142,7 @@ class LinearModel(InNotebook, CheckedFields):
         return Quadratic.of(operators, (item.law for item in contributions.values()), len(self.coordinates))
 
     def solve(self, load: Array) -> Array:
-        """Return K^-1 load (..., n, k) for loads (..., n, k)."""
+        """Return the displacements K^-1 f (..., n, k) for the forces f = `load` (..., n, k)."""
         if self.is_sparse:
             return self.solver.solve(load)
         if self.floating is None:
@@ -157,7 +158,7 @@ class LinearModel(InNotebook, CheckedFields):
         return float(np.median(stiff[used] / heavy[used])) if used.any() else 1.0
 
     def follow(self, strains: Mapping[str, Array]) -> Array:
-        """Compute the motion (..., n, k) of least strain energy if `strains` (..., r, k) are added in parts: -K^-1 sum G^T k strain."""
+        """Compute the motion (..., n, k) of least strain energy when `strains` (..., r, k) are imposed: -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
         forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())
@@ -168,7 +169,7 @@ class LinearModel(InNotebook, CheckedFields):
         return self.masses @ motion if self.is_sparse else self.inertia_matrix @ motion
 
     def seen(self, rows: list[int], motion: Array) -> Array:
-        """Compute the outputs `rows` (..., p, k) for a motion (..., n, k)."""
+        """Compute the outputs (..., p, k) with the indices `rows` for a motion (..., n, k)."""
         return (self.output @ motion)[rows] if self.is_sparse else self.output[..., rows, :] @ motion
 
     @property
@@ -183,7 +184,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def loss_matrix(self) -> Array:
-        """Compute the imaginary part of B (..., n, m) under structural damping, due to loss factors of parts with imposed strokes."""
+        """Imaginary part of B (..., n, m) under structural damping: it is due to the loss factors of parts with imposed strokes."""
         return self._of_imposed(lost=True)
 
     def _of_imposed(self, *, lost: bool) -> Array:
@@ -213,7 +214,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """Names of the actuator inputs, strokes and forces. All other inputs are components of wrenches."""
+        """Names of the actuator inputs (strokes and forces). All other inputs are components of wrenches."""
         return tuple(channel.name for channel in self.inputs if "." not in channel.name)
 
 

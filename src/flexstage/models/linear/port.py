@@ -1,4 +1,4 @@
-"""Ports: inputs and outputs of a linear model selected by name, including wrenches on any body and ground motion."""
+"""Ports: selection of inputs and outputs of a linear model by name, including wrenches on any body and ground motion."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Ports:
     """Selected inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
 
     - Shapes: `force` and `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m).
-    - For ground motion, z is relative to the ground, but y is absolute. For inputs that impose no motion, `inertial` is zero.
+    - With ground motion as input, z is relative to the ground, but y is absolute. For inputs that impose no motion, `inertial` is zero.
     - `lost` (..., n, m): imaginary part of the force with structural damping (see `LinearModel.loss_matrix`).
-    - `loss` (..., p): the loss factor of the link for an output that is a link force; zero for other outputs.
+    - `loss` (..., p): for an output that is a link force, the loss factor of this link; for all other outputs, zero.
     """
 
     inputs: tuple[Channel, ...]
@@ -44,7 +44,7 @@ def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterab
     - wrench components on any body whose twist is an output (`B1/tip.fx`, at the reference point of the body, stage axes);
     - absolute ground motion (m, rad) at the platform's reference point, `ground.x` to `ground.rz`.
 
-    Raises `DesignError` for all unknown names, each with the most similar known names.
+    Raises `DesignError` for all unknown names, with the most similar known names for each unknown name.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -50,15 +50,15 @@ class StateSpace:
 
 
 def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int | None = None) -> StateSpace:
-    """Build the modal state space between chosen ports, with the lowest `modes` modes (default: all). Other modes act statically, via D.
+    """Build the modal state space between chosen ports, with the lowest `modes` modes (default: all). Higher modes are static terms in D.
 
     The modal coordinates eta satisfy eta'' + R eta' + omega^2 eta = Phi^T B u - Phi^T M_b u''. Phi are the mode shapes, B and M_b the
     forces per input u and per u''. R is the modal damping 2 zeta omega plus the dampers of parts, Phi^T D Phi.
 
     With ground displacement as input, the states are eta + Phi^T M_b u, so that no input is differentiated.
 
-    Modal damping is exact. Rayleigh damping is exact, except that the static response of omitted modes is undamped. Structural damping has
-    no time-domain form; each mode has its equivalent damping ratio, as `note` says.
+    Modal damping is represented exactly. Rayleigh damping is also exact, except that the static response of omitted modes is undamped.
+    Structural damping has no time-domain form; each mode has its equivalent damping ratio, as `note` says.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports

@@ -20,7 +20,7 @@ _ADVICE = "Add stiffness in that degree of freedom to a link of these bodies, or
 
 
 def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
-    """Raise `DesignError` for outputs that are forces of locked DOFs: elastic deformations do not determine them.
+    """Raise `DesignError` for outputs that are forces of locked DOFs: elastic deformations do not determine these forces.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -28,7 +28,7 @@ def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
     """
     unknown = set(model.unknown)
     require(
-        Finding(name, "unknown force, as this degree of freedom of the link is locked", "Specify a stiffness for it")
+        Finding(name, "unknown force, because the link locks this degree of freedom", "Specify a stiffness for this degree of freedom")
         for name in outputs
         if name in unknown
     )
@@ -73,7 +73,7 @@ def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
 
 
 def floats(model: LinearModel, inputs: tuple[str, ...]) -> list[bool]:
-    """Return for each input whether it drives a motion of the platform that has no stiffness.
+    """Return, for each input, whether the input drives a platform motion that has no stiffness.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -89,7 +89,7 @@ def floats(model: LinearModel, inputs: tuple[str, ...]) -> list[bool]:
 
 
 def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> None:
-    """Raise `DesignError` for wrenches that drive a free internal mode, if an output measures this mode: its displacement is unbounded.
+    """Raise `DesignError` for wrenches that drive a free internal mode, if an output measures this mode, as its displacement is unbounded.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -54,7 +54,7 @@ class _Task(ctypes.Structure):
 
 @dataclass(frozen=True, eq=False)
 class CompiledResult:
-    """Poses of b cases, with (b,) `status`, number of iterations `count`, size `moved` of the last step and last residual `lack`."""
+    """Poses of b cases, and per case (b,): `status`, number of iterations `count`, size `moved` of the last step, last residual `lack`."""
 
     pose: Pose
     status: Array
@@ -65,7 +65,7 @@ class CompiledResult:
 
 @dataclass(frozen=True, eq=False)
 class Tables:
-    """Kernel input of a stage: sizes and named arrays for each group of flexures."""
+    """Kernel input of a stage: for each group of flexures, `sizes` and named `arrays`."""
 
     sizes: tuple[Mapping[str, int], ...]
     arrays: tuple[Mapping[str, Array], ...]
@@ -105,7 +105,7 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: Solve
     """Iterate every case in C; requires `kernel` and `tables`.
 
     If `other` terms are specified, only one step is computed, because these terms are valid only at the start. The result equals
-    `newton.iterate` up to rounding. The result of a case is bit-identical whatever the other cases are.
+    `newton.iterate` up to rounding. The result of a case is bit-identical for any set of other cases.
     """
     library = kernel()
     assert library is not None  # noqa: S101  (the caller has asked)

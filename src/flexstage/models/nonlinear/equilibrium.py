@@ -42,7 +42,8 @@ class State(InNotebook):
     `status` is the outcome of each solution after `iterations`. The `residual` is the largest remaining error: gaps divided by flexure
     lengths, or forces divided by stiffnesses.
 
-    A case that did not converge is NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` explains each failure.
+    The results of a case that did not converge are NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` explains
+    each failure.
 
     `reactions` (..., h) act on the `held` coordinates [N, N m].
     """
@@ -66,7 +67,7 @@ class State(InNotebook):
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Failure reason of each case, in the order of `status.ravel()`; empty if it converged."""
+        """Failure reason of each case, in the order of `status.ravel()`; empty for a converged case."""
         return tuple(
             failure_reason(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True)
         )
@@ -88,7 +89,7 @@ class State(InNotebook):
         return self._known(logarithm(self.pose.turn[:, self.place(body)[0]]))
 
     def twist(self, place: str = "platform") -> Array:
-        """Return displacement and rotation vector (..., 6) [m, rad] of a body or point."""
+        """Return displacement and rotation vector (..., 6) [m, rad] of a body or a named point."""
         return np.concatenate([self.displacement(place), self.rotation(place)], axis=-1)
 
     def wrench(self, link: str) -> Array:
@@ -118,15 +119,13 @@ class State(InNotebook):
 
 
 def failure_reason(status: int, share: float) -> str:
-    """Return the reason why a case has no result, and its largest load fraction with an equilibrium; empty if it has a result."""
+    """Return the reason why a case has no result, with the largest load fraction that has an equilibrium; empty for a converged case."""
     if status == Status.CONVERGED:
         return ""
     if status == Status.CRITICAL:
-        return f"at {share:.4g} of the loads the stage snaps or buckles: an equilibrium beyond is not on the path from the unloaded stage"
+        return f"at {share:.4g} of the loads the stage snaps or buckles; the path from the unloaded stage does not reach the full loads"
     if status == Status.NOT_FOLLOWED:
-        return (
-            f"the path of equilibria from the unloaded stage ends at {share:.3g} of the loads, so it contains no state with the full loads"
-        )
+        return f"the path of equilibria from the unloaded stage ends at {share:.3g} of the loads and does not reach the full loads"
     what = "the stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
     progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the load path"
     return f"{what} under the full load; {progress}. The path may end there: use fs.continuation (by arc length) or fs.critical_load"
@@ -171,7 +170,8 @@ def equilibrium(
 
     A load is a number, or an array with one value per case. `hold` fixes coordinates of bodies and points: `platform.y` is a displacement
     [m], `platform.rz` a component of the rotation vector [rad]. The result includes the reactions at fixed coordinates. `weight` is the
-    fraction of gravity, `stated` the fraction of specified forces and preloads. Wrenches keep their directions in space.
+    applied fraction of gravity, and `stated` the applied fraction of the description's forces and preloads. Wrenches keep their directions
+    in space.
 
     The iteration of every case starts at the nominal position, or at `start`, under the full load. If the iteration does not converge, the
     load is increased in steps, then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
@@ -283,7 +283,7 @@ def corrected(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> State:
-    """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the difference.
+    """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the model difference.
 
     One Newton step is not sufficient, because the stiffness equals the derivative of the residual only within 1e-6. The loads and fixed
     coordinates must be the same as for `start`. Cases without a state in `start` remain without a state.

@@ -40,12 +40,12 @@ def evaluate_designs(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Evaluate results for a batch of d designs (one description with arrays), or for a single design.
+    """Evaluate results for a single design, or for a batch of d designs (one description with arrays as values).
 
     The results of a batch have the shape (d, ...), and those of a single design (...).
 
     The other arguments are those of `equilibrium`; axes of cases come after the axis of designs. For a design without an equilibrium, the
-    state is NaN, and so are the results.
+    state and the results are NaN.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -73,13 +73,13 @@ def gradients(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Compute gradients (a, ...) of results with respect to the numbers (in SI units) at the a addresses `names`, for constant loads.
+    """Compute gradients (a, ...) of results under constant loads, with respect to the numbers [SI] at the addresses `names` (a,).
 
     By the implicit function theorem, the derivative of the equilibrium coordinates q with respect to a number p is - K^-1 dF/dp. K is the
     tangent stiffness, including the inner unknowns of flexures. F is the residual; its derivative is computed at the known state. Residual
     and results are differentiated by a fourth-order central difference with four points. The error of a gradient is about 1e-8 times the
-    ratio of the result to the number. Gradients are NaN without an equilibrium. Raises `DesignError` for addresses that are not a single
-    number.
+    ratio of the result to the number. If there is no equilibrium, the gradients are NaN. Raises `DesignError` for addresses whose value is
+    not a single number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()

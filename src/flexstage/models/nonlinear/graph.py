@@ -27,7 +27,7 @@ class FlexureState:
 
     Vectors in space: from the first body's reference point, `onset` (a_i) points to the start and `lever` (h) to the end; `arm` (a_j)
     points from the second body's reference point to the end. `weight` (l, b, 3) is the weight per length in the start frames, divided by E
-    I / L^3 with the bending stiffness E I and the length L of a flexure (absent without gravity). `gap` (l, b, 6) contains the gaps in
+    I / L^3 with the bending stiffness E I and the length L of a flexure (without gravity: `None`). `gap` (l, b, 6) contains the gaps in
     translation and rotation between the end and the second body.
 
     `wrench` (l, b, 6) is the wrench that the second body exerts on the flexure's end, after the flexure's own unknowns are solved.
@@ -55,7 +55,7 @@ class OtherTerms:
 
 @dataclass(frozen=True, eq=False)
 class ResidualSum:
-    """Residual (b, n) and stiffness during assembly; they include rows of the ground."""
+    """Residual (b, n) and stiffness during assembly; both include rows of the ground."""
 
     residual: Array
     stiffness: Sum
@@ -273,7 +273,7 @@ def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -
 
 
 def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
-    """Compute the generalised forces (b, n) of input loads on bodies and locked DOFs at a pose; they are linear in the loads."""
+    """Compute the generalised forces (b, n) of input loads on bodies and locked DOFs at a pose; the forces are linear in the loads."""
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
     result = []
     for inputs in (0.0 * rate.inputs, rate.inputs):

@@ -88,17 +88,17 @@ class _Coordinates:
 
 @check_arguments
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
-    """Linearise about a state: a linear model for modes, responses and lost motion of a displaced or loaded stage.
+    """Linearise about a state; returns a linear model for modes, responses and lost motion of a displaced or loaded stage.
 
     The cases of the state are the batch axes of the model.
 
     - Fixed coordinates are released: their reactions act as loads of constant direction on the free stage. The reaction at a fixed rotation
       is the moment conjugate to the component of the rotation vector. Fixed coordinates in `locked` remain fixed.
-    - Plate fields are quasi-static, without mass.
-    - The stiffness is symmetrised. The stiffness has one contribution per link, and the contribution `geometric`.
-    - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
+    - The transverse deformations of plates (plate fields) are quasi-static, without mass.
+    - The stiffness is symmetrised. It is the sum of one contribution per link and the contribution `geometric`.
+    - Forces inside flexures are not computed: the model lists them as `unknown` outputs. Gauges measure along their nominal lines.
     - Without `inner` coordinates, each flexure is a 6x6 stiffness about its middle, in the frame of its start. Lost motion and drift use
-      this form. Guyan reduction of the mass leaves statics unchanged and makes modes approximate.
+      this form. The mass is reduced by Guyan's method, so that static results are unchanged and modes are approximate.
 
     Raises `DesignError` if no case has an equilibrium, if a name in `locked` is not fixed, or if matrices need more than 8 GB.
 
@@ -325,8 +325,8 @@ def _arms(group: Flexures, bent: FlexureState) -> Array:
 def modal_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> tuple[Array, dict[str, Array]]:
     """Compute the motions of bodies and flexures for mode shapes (n, k) of `linearise(state, locked=locked)`, in the first case.
 
-    Returns the twists of bodies at their reference points (k, bodies, 6), and of flexure centre lines by name (k, points + 2, 6), including
-    both ends.
+    Returns the twists of bodies at their reference points (k, bodies, 6), and the twists of flexure centre lines by name (k, points + 2,
+    6), including both ends.
     """
     model = state.model
     whole = assemble(model, state.pose, state.loads, state.hold)

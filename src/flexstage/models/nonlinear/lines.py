@@ -30,7 +30,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """Small motions about a state: twists of bodies at their reference points (k, n, 6), and of flexures' centre lines (k, s, 6)."""
+    """Small motions about a state: twists (k, n, 6) of bodies at their reference points, and twists (k, s, 6) of flexures' centre lines."""
 
     bodies: Array
     lines: dict[str, Array]

@@ -55,7 +55,7 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordina
 
 
 def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[EquilibriumSolution]:
-    """Compute the equilibria of several designs of the same structure, several designs at a time."""
+    """Compute the equilibria of designs of the same structure, in groups of several designs."""
     several = min(_DESIGNS, max(1, _CHUNK // len(tasks[0].loads.inputs)))
     if several == 1:
         return [equilibrate(*_parts(each), options) for each in tasks]
@@ -123,7 +123,7 @@ def merge(solution: EquilibriumSolution, cases: Array, other: EquilibriumSolutio
 
 
 def search(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions) -> EquilibriumSolution:
-    """Iterate all cases together until each is finished; in C if the kernel supports all flexures of the stage."""
+    """Iterate all cases together until every case is finished; the iteration is in C if the kernel supports all flexures of the stage."""
     (solutions,) = search_designs((Task(model, start, loads, hold),), options)
     return solutions
 
@@ -138,7 +138,7 @@ class Task:
     hold: FixedCoordinates
 
     def of(self, cases: Array, pose: Pose) -> Task:
-        """Return the task for some cases. Their start poses are from `pose`, which contains the poses of all cases."""
+        """Return the task for some cases, with start poses from `pose`, which contains the poses of all cases."""
         return Task(self.model, pose.of(cases), self.loads.of(cases), self.hold.of(cases))
 
 
@@ -256,7 +256,7 @@ def _together(tasks: list[Task], design: Array) -> Task:
 
 
 def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions) -> tuple[Pose, Array, Array]:
-    """Compute one step: the new pose, the size of the step (b,), and the largest residual before the step (b,)."""
+    """Compute one step; returns the new pose, the size of the step (b,), and the largest residual before the step (b,)."""
     system = assemble(model, pose, loads, hold)
     step = system.solved(-system.residual)
     size = motion(model, step, model.size)

@@ -1,4 +1,4 @@
-"""Nonlinear model of a stage: bodies, flexures in groups of one kind, links about centres, and load points."""
+"""Nonlinear model of a stage: bodies, flexures in groups of one kind, links with a stiffness about a centre, and load points."""
 
 from __future__ import annotations
 
@@ -159,12 +159,12 @@ class _NominalBodies:
 def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
     """Build the nonlinear model of a stage: one spectral element per flexure, finite motions of bodies (docs/nonlinear.md).
 
-    Leaves, rods, notches and necks are flexures that bend. All other links have a 6x6 stiffness, and superelements have their matrices, in
-    a corotated frame. The model is valid for small strains in the flexures. Batches of designs raise `DesignError`.
+    Leaves, rods, notches and necks are flexures that bend. All other links have a 6x6 stiffness. Superelements have their specified
+    matrices in a corotated frame. The model is valid for small strains in the flexures. Batches of designs raise `DesignError`.
 
-    `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely; a part has
-    the mean temperature of its ends. The ground expands about the origin; `ground` names its material (default: as specified in the
-    description, or the material of the parts on the ground). Incompatible expansion bends the parts. Moduli are constant. With a
+    `temperature` is a uniform temperature change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely;
+    a part has the mean temperature of its ends. The ground expands about the origin; `ground` names its material (default: as specified in
+    the description, or the material of the parts on the ground). Incompatible expansion bends the parts. Moduli are constant. With a
     temperature change, every material must have an expansion coefficient.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -35,9 +35,10 @@ class SolverOptions(CheckedFields):
     of a step is the largest of its translations divided by the longest flexure length, its rotations in radians, and its changes of flexure
     amplitudes.
 
-    `limit` is the largest permitted step; translations are divided by the stage's `reach`. If a case fails, the load is applied in steps,
-    down to 2^-`halvings` of the load; if this fails, by arc length in at most `arcs` steps. With `past`, the path also passes limit points:
-    the load may decrease and then increase to its whole value, as in a snap-through.
+    `limit` is the largest permitted step; for this limit, translations are divided by the length scale `Nonlinear.reach`. If the iteration
+    of a load case does not converge, the load is applied in steps, down to 2^-`halvings` of the load. If the steps fail too, the load is
+    applied by arc length in at most `arcs` steps. With `past`, the path also passes limit points: the load may decrease and then increase
+    to its whole value, as in a snap-through.
     """
 
     step: float = 1e-9
@@ -51,7 +52,7 @@ class SolverOptions(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Loads of b cases: `inputs` (b, m) of the model's channels, `gravity` (b, 3) [m/s^2], fraction `constant` (b,) of specified forces.
+    """Loads of b cases: values `inputs` (b, m) of the channels, `gravity` (b, 3) [m/s^2], fraction `constant` (b,) of the specified forces.
 
     Preloads count as specified forces. Forces and moments of wrench inputs keep their directions in space.
     """
@@ -89,7 +90,7 @@ class Pose:
         return Pose(self.position[cases], self.turn[cases], strain, wrench, self.held[cases])
 
     def put(self, cases: Array, other: Pose) -> Pose:
-        """Return a pose in which some cases are replaced."""
+        """Return a copy of the pose in which some cases are replaced."""
         strain, wrench = (
             tuple(put(one, (slice(None), cases), new) for one, new in zip(mine, theirs, strict=True))
             for mine, theirs in ((self.strain, other.strain), (self.wrench, other.wrench))

@@ -24,7 +24,7 @@ class Sum(Protocol):
         """Add l blocks (l, b, r, c). `rows` (l,) and `columns` (l,) contain the first row and the first column of each block."""
 
     def total(self, kept: Array) -> Array | tuple[Any, ...]:
-        """Return the matrix with only the rows and columns `kept`: (b, n, n), or sparse matrices."""
+        """Return the matrices with only the rows and columns `kept`: an array (b, n, n), or sparse matrices."""
         ...
 
 
@@ -119,7 +119,7 @@ def negative_pivots(matrix: Any, freedoms: int) -> int:
 def nearest_descent(matrix: Any, scale: Array) -> tuple[float, Array]:
     """Compute the lowest eigenvalue of the scaled stiffness K among motions that meet constraints C, and its vector (n,).
 
-    The matrix is [K, C^T; C, 0]; the motions are the null space of C. Rows and columns of K are divided by `scale` (n,).
+    The whole matrix is [K, C^T; C, 0]; the admissible motions are the null space of C. Rows and columns of K are divided by `scale` (n,).
 
     Lanczos' method on the inverse gives the two eigenvalues nearest to zero; the negative eigenvalue, if any, is returned.
     """

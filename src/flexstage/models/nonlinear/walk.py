@@ -1,8 +1,8 @@
 """Body poses of large stages, computed from the flexures along a spanning tree from the ground, without gaps between links.
 
 A solution step rotates bodies by finite rotations, but displaces them to first order. Along a chain of many links, this difference opens a
-gap at every link, which causes wrong restoring forces. Positions are sums along the tree. They are compensated (W. Kahan, Comm. ACM 8,
-1965), because equal links round equally: the errors would add up to a force in all links.
+gap at every link, which causes wrong restoring forces. Positions are compensated sums along the tree (W. Kahan, Comm. ACM 8, 1965). Without
+compensation, the equal rounding errors of equal links would add up to a force in all links.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Step:
 
 @SESSION.keep(16)
 def tree(model: Nonlinear) -> tuple[Step, ...]:
-    """Return the flexures of a spanning tree from the ground, nearest first. Bodies connected only by other links are not included.
+    """Return the flexures of a spanning tree from the ground, nearest first. Bodies that no flexure connects to the tree are not included.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear

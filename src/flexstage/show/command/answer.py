@@ -41,10 +41,10 @@ _MAPPING = "mapping: 0 strokes"
 
 @dataclass(frozen=True)
 class CommandResult:
-    """The result of a command: `body` of its JSON document, `tables`, and `report` as HTML, each computed on request.
+    """The result of a command: the `body` of its JSON document, its `tables`, and its `report` as HTML, each computed on request.
 
-    `mechanism` is the description, or `None` if the command read a record only; `model` is the kind of model. `warnings` are warnings about
-    the result, listed after those about the description.
+    `mechanism` is the description, or `None` if the command read only a record. `model` is the kind of model. `warnings` are warnings about
+    the result; warnings about the description are listed before them.
     """
 
     mechanism: Mechanism | None
@@ -67,10 +67,10 @@ _Given = ParamSpec("_Given")
 def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], Callable[_Given, None]]:
     """Make a command from a function that returns a `CommandResult`.
 
-    The command writes the requested documents, or prints the tables. A parameter of a dataclass type is replaced by the options among its
-    fields; a `Mechanism` is read from its file. `files` names further options for output files, such as `report` or a file that the
-    function writes itself. All outputs are checked before the function is called. If an output is stdout, no tables are printed. A function
-    that returns `None` must write its outputs itself.
+    The command writes the requested documents, or prints the tables. A parameter with a dataclass type is replaced by those fields of the
+    dataclass that are options. A `Mechanism` parameter is read from the design file. `files` names further options for output files, such
+    as `report` or a file that the function writes itself. All outputs are checked before the function is called. If an output is stdout, no
+    tables are printed. A function that returns `None` must write its outputs itself.
     """
 
     def decorate(function: Callable[_Given, CommandResult | None]) -> Callable[_Given, None]:
@@ -122,7 +122,7 @@ def _paths(value: Any) -> list[Path]:
 
 
 def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], csv: Path | None) -> None:
-    """Write the requested outputs, with the names `json`, `xlsx`, `report` and `csv`; print the tables unless an output is stdout.
+    """Write the requested `outputs` (`json`, `xlsx`, `report`) and the `csv` folder; print the tables unless an output is stdout.
 
     `kind` is the kind of the JSON document.
     """
@@ -144,7 +144,7 @@ def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], cs
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
-    """Write the parts of a result into a folder, if requested: single values to `modes.csv`, the part `twists` to `modes.twists.csv`."""
+    """Write the parts of a result into a folder, if requested, e.g. single values to `modes.csv`, part `twists` to `modes.twists.csv`."""
     if folder is None:
         return
     make_folder(folder)
@@ -158,13 +158,13 @@ def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
 
 
 def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable[[], Document]) -> None:
-    """Write the parts of a result as an Excel workbook, if requested; the last sheet contains the envelope of the document."""
+    """Write the parts of a result as an Excel workbook, if requested; the last sheet contains the values of `about` (see `envelope`)."""
     if target is not None:
         save(target, to_xlsx(body(), {key: value for key, value in about().items() if value not in (None, [])}), "--xlsx")
 
 
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
-    """Yield texts with the warnings about a description, `more` warnings about the result, and default values that affect the result.
+    """Yield texts: warnings about a description, `more` warnings about the result, and default values that affect the result.
 
     `kind` is the kind of the result. Without a description (`None`), only the warnings about the result are listed.
     """
@@ -175,7 +175,7 @@ def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ..
 
 
 def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
-    """Print the missing results and the reasons to stderr, one line for each reason. `forced` means a force-driven stage."""
+    """Print the missing results and the reasons to stderr, one line for each reason. `forced` is true for a force-driven stage."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
         text = reason.partition(". ")[0].rstrip(".")

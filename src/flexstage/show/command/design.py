@@ -109,12 +109,12 @@ def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -
     """
     linear = loaded_model(mechanism, model) if loaded else read(mechanism, model)
     if linear is None:
-        raise refuse("--model ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
+        raise refuse("--model ideal", "the ideal model has no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
     return linear
 
 
 def load_notes(mechanism: Mechanism, model: Model) -> tuple[str, ...]:
-    """Return the sentence on the permanent load if it is significant for the lumped model; otherwise nothing."""
+    """Return the sentence on the permanent load if `model` is the lumped model and the load is significant; otherwise nothing."""
     effect = load_effect(mechanism) if model is Model.LUMPED else None
     return () if effect is None or effect.model is None else (effect.text,)
 

@@ -50,7 +50,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 @dataclass(frozen=True)
 class OperatingPointOptions:
-    """Operating-point options of a command. They count as true if any is used; else results are for the undeformed stage."""
+    """Operating-point options of a command. The object is true if any option is used; otherwise, results are for the undeformed stage."""
 
     at: At = None
     load: Load = None
@@ -92,8 +92,8 @@ class OperatingPointOptions:
 class CommandStage:
     """The stage of a command: at an `operating_point`, or in the undeformed configuration with the `effect` of its permanent load.
 
-    `model` is the kind of model. `linear` is the linear model about the operating point. `links` is the same model with separate links, for
-    lost motion and drift.
+    `model` is the kind of model. `linear` is the linear model about the operating point. `links` is the corresponding model for lost motion
+    and drift.
     """
 
     mechanism: Mechanism
@@ -103,12 +103,12 @@ class CommandStage:
 
     @property
     def linear(self) -> LinearModel:
-        """Linear model about the operating point; without one, of the undeformed stage with the effect of a significant permanent load."""
+        """Linear model about the operating point or, if there is none, of the stage with the effect of a significant permanent load."""
         return elastic_model(self.mechanism, self.model, loaded=True) if self.operating_point is None else self.operating_point.linear
 
     @property
     def links(self) -> LinearModel:
-        """The linear model with separate links, for lost motion and drift."""
+        """Linear model for lost motion and drift. At an operating point, its flexures follow their ends quasi-statically."""
         if self.operating_point is not None:
             return self.operating_point.links
         loaded = None if self.effect is None else self.effect.links
@@ -121,7 +121,7 @@ class CommandStage:
         return result if self.effect is None else SideBySide((result, {"loaded": self.effect}))
 
     def tables(self) -> Iterator[Table | str]:
-        """Yield the text on the permanent load or the tables of the operating point, printed before the result."""
+        """Yield the text on the permanent load, or the tables of the operating point. They are printed before the result."""
         if self.effect is not None and self.effect.model is not None:
             yield self.effect.text
         if self.operating_point is not None:
@@ -138,7 +138,7 @@ def command_stage(mechanism: Mechanism, place: OperatingPointOptions, model: Mod
     if not place:
         return CommandStage(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
-        raise refuse(place.options, f"the {model.value} model has no operating points", f"Remove --model, or {place.options}")
+        raise refuse(place.options, f"the {model.value} model has no operating points", f"Remove --model, or remove {place.options}")
     known = displaced.nonlinear(mechanism)
     there = operating_points.operating_point(
         mechanism, place.brought(known), loads=loads_of(known, place.load or ()), fixed=place.locked, temperature=place.warmth

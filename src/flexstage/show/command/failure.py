@@ -18,12 +18,12 @@ from flexstage.show.command.terminal import print_note, print_warning, streams
 
 DONE, MISSED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 70, 130
 SIGNALLED = 128
-"""Base of exit codes of commands ended by a signal: the number of the signal is added."""
+"""Offset of the exit code of a command that a signal ended: the exit code is this offset plus the number of the signal."""
 ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-_KEPT = "Finished finite-element results (cache), designs of a study (results file) and pairs of a search (folder) are kept; see --resume."
+_KEPT = "Finished results are kept for --resume: finite elements in the cache, designs in the results file, pairs in the folder."
 
 
 def run_guarded(action: Callable[[], object]) -> int:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # the table of commands loads no models
 
 
 class ModesModel(Protocol):
-    """Function that returns the modes of a stage, or `None` for missing modes. If `computing` is false, it only reads the cache."""
+    """Function that returns the modes of a stage, or `None` if they are missing. If `computing` is false, it only reads the cache."""
 
     def __call__(self, mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
         """Return the modes of a stage."""

@@ -22,7 +22,7 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
-    """Define a text option. The help text is `about`, followed by a sentence with the default value if there is one."""
+    """Define a text option. The help text is `about`, followed by a sentence with the default value if `default` is not empty."""
     return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
@@ -85,12 +85,15 @@ Changes: TypeAlias = Annotated[
     text_option(
         "--set",
         "ADDRESS=VALUE",
-        "Changed value of the design, e.g. horizontal/front.thickness=1.4mm or numbers.arm=+10%. Repeatable.",
+        "Value to change in the design, e.g. horizontal/front.thickness=1.4mm or numbers.arm=+10%. Repeatable.",
     ),
 ]
 
 ElasticBodies: TypeAlias = Annotated[
-    bool, typer.Option("--elastic-bodies", help="Elastic bodies in the lumped model; their flexibility is estimated from outlines.")
+    bool,
+    typer.Option(
+        "--elastic-bodies", help="Use elastic bodies in the lumped model; the flexibility of a body is estimated from its outlines."
+    ),
 ]
 
 Json: TypeAlias = Annotated[str | None, text_option("--json", "-|FILE", "JSON file of the result, or - for stdout.")]
@@ -116,8 +119,8 @@ InputDensities: TypeAlias = Annotated[
     text_option(
         "--input-asd",
         "INPUT=DENSITY",
-        "Amplitude spectral density of white noise. The unit specifies whether of the input, its velocity or its acceleration, e.g. "
-        '"ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
+        "White noise at an input, as an amplitude spectral density. The unit of the density shows whether the input, its velocity or its "
+        'acceleration is white, e.g. "ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
     ),
 ]
 
@@ -143,7 +146,7 @@ rate_option = partial(text_option, "--rate", "FREQUENCY", 'Sampling rate, e.g. "
 band_option = partial(text_option, "--band", "LOW HIGH", 'Frequency band, e.g. "50 Hz" "400 Hz".')
 temperature_option = partial(text_option, "--temperature", "VALUE", 'Uniform temperature change, e.g. "5 K".')
 parameters_option = partial(
-    text_option, "--parameters", "ADDRESSES", 'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.'
+    text_option, "--parameters", "ADDRESSES", 'Addresses of parameters, e.g. "neck.thickness, steel.density". Repeatable.'
 )
 order_option = partial(typer.Option, "--order", max=5, help="Polynomial order of the elements.")
 modes_option = partial(typer.Option, "--modes", help="Number of modes, starting with the lowest.")
@@ -151,7 +154,7 @@ STEPS = typer.Option(
     "--steps",
     metavar="N",
     min=2,
-    help="Number of equilibria, both ends included. Default: 11, or as defined by the load path.",
+    help="Number of equilibria, including the first and the last. Default: 11, unless a load path of the design specifies another number.",
     show_default=False,
 )
 

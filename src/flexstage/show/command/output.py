@@ -75,7 +75,7 @@ def announce(text: str) -> None:
 
 
 def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iterable[Path] = ()) -> None:
-    """Raise `DesignError` for outputs that cannot be written or that are input files. `wanted` contains pairs of an option and its path.
+    """Raise `DesignError` for outputs that cannot be written or that are input files. `wanted` contains pairs (option, path).
 
     `read` are the input files.
     """
@@ -88,7 +88,7 @@ def _problems(outputs: Iterable[tuple[str, str | Path | None]], read: Iterable[P
     for option, target in outputs:
         if target is not None and str(target) == STDOUT:
             if spoken is not None:
-                yield Finding(option, f"stdout is also the output of {spoken}", "Write one of them to a file")
+                yield Finding(option, f"stdout is also the output of {spoken}", "Write one of the two outputs to a file")
             spoken = option
         if target is None or str(target) == STDOUT:
             continue
@@ -173,7 +173,7 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
 
 
 def save(target: str | Path, content: str | bytes, option: str) -> None:
-    """Write to a file and print a note afterwards, or to stdout for `-`."""
+    """Write to a file and print a note afterwards; write to stdout if the target is `-`."""
     write(target, content, option)
     if str(target) != STDOUT:
         announce(f"Wrote {target}")

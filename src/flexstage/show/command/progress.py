@@ -1,4 +1,4 @@
-"""Progress bar of a long computation on stderr: step, fraction, remaining time. Without a terminal, it prints nothing."""
+"""Progress bar of a long computation on stderr: step, fraction, remaining time. If stderr is not a terminal, nothing is printed."""
 
 from __future__ import annotations
 

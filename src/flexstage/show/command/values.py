@@ -44,7 +44,7 @@ def names(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name, float] | None:
-    """Find the first known quantity that fits the unit of a text. Returns the quantity's name and the value in SI units, or `None`."""
+    """Find the first known quantity that fits the unit of a text. Returns the quantity's name and the SI value; `None` if none fits."""
     for name, quantity in known.items():
         try:
             return name, parse(text, quantity)
@@ -84,7 +84,7 @@ def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str]
 
 
 def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
-    """Read platform motions [m, rad] from texts AXIS=VALUE of an option; report all errors together."""
+    """Read the magnitudes [m, rad] of platform motions from texts AXIS=VALUE of an option; report all errors together."""
 
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
@@ -104,12 +104,12 @@ def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
         return None
     low, high = (parse(text, FREQUENCY, where="--band") for text in band)
     if not 0.0 < low < high:
-        raise refuse("--band", f"{band[0]} to {band[1]} is not a band", "Use a low frequency above zero and a higher one")
+        raise refuse("--band", f"{band[0]} to {band[1]} is not a band", "Use a lower limit above zero and a higher upper limit")
     return low, high
 
 
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
-    """Read white spectra by input from texts INPUT=DENSITY of `--input-asd`.
+    """Read the white spectrum of each input from texts INPUT=DENSITY of `--input-asd`.
 
     The unit of an amplitude spectral density determines whether it is the density of the input, its velocity or its acceleration. All
     errors are reported together.
@@ -124,5 +124,5 @@ def _spectrum(model: LinearModel, name: str, value: str, where: str) -> Spectrum
     known = {rate: Quantity("amplitude density", form, form, f"1e-9 {form}") for rate, form in forms.items()}
     if (fit := first_that_parses(value, known)) is not None:
         return Spectrum(fit[1] ** 2, rate=fit[0])
-    what = f'must be an amplitude spectral density of {name} [{unit}/Hz^0.5], its velocity or its acceleration (got "{value}")'
+    what = f'must be an amplitude spectral density of {name} [{unit}/Hz^0.5], or of its velocity or acceleration (got "{value}")'
     raise refuse(where, what, _ASD_EXAMPLE)

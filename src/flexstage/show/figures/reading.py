@@ -20,8 +20,8 @@ _DIGITS = 5
 class Spot:
     """A named point of a figure: its `text` appears if the cursor is close to (`x`, `y`) in panel number `panel`.
 
-    If `y` is `None`, only the distance of the cursor from `x` matters. `plays` is the name of the motion that a button beside the text
-    starts in the page's viewer.
+    If `y` is `None`, only the distance of the cursor from `x` matters. A button beside the text plays the motion `plays` in the page's
+    viewer.
     """
 
     x: float
@@ -34,9 +34,9 @@ class Spot:
 def reading(figure: Any, spots: Iterable[Spot] = ()) -> str:
     """Describe the panels of a drawn figure as JSON: positions in points, axes, and labelled curves.
 
-    A curve without a label gets the label of the curve with equal style in the same column; if there is none, the curve is left out. A
-    panel without a name gets the name of a panel in the same row. Equal arrays of abscissae are listed once, in `over`; the `x` of a curve
-    is the index of its array in `over`.
+    A curve without a label gets the label of a curve with equal style in the same column; curves that get no label are left out. A panel
+    without a name gets the name of a panel in the same row. Equal arrays of abscissae are listed once, in `over`; the `x` of a curve is the
+    index of its array in `over`.
 
     >>> from flexstage.show.figures.style import canvas
     >>> figure = canvas(1.0, 1.0)

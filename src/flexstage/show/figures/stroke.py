@@ -18,7 +18,7 @@ _LEAST_SPAN = 1e-3
 
 
 def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
-    """Plot curves as functions of the first curve, in panels of a matplotlib Figure. Points that exceed a limit (`beyond` (p,)) are shaded.
+    """Plot curves as functions of the first curve, in panels of a matplotlib Figure. Points over a limit (`beyond` (p,)) are shaded.
 
     >>> curves = (Curve("platform.x", "mm", np.array([0.0, 1.0])), Curve("force", "N", np.array([0.0, 2.0])))
     >>> len(stroke_figure(curves, np.array([False, True])).axes)

@@ -80,7 +80,7 @@ def style_context(salt: str = "flexstage") -> Generator[None]:
 
 
 def canvas(width: float, height: float) -> Any:
-    """Create an empty `matplotlib.figure.Figure` of this size in inches.
+    """Create an empty `matplotlib.figure.Figure` with a width and a height in inches.
 
     >>> canvas(2.0, 1.0).get_size_inches().tolist()
     [2.0, 1.0]

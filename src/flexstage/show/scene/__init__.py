@@ -1,1 +1,1 @@
-"""Pictures of the stage as solids: facets of bodies, links and gauges, sorted by depth, in parallel projection."""
+"""Pictures of the stage as solids: facets of bodies, links and gauges in parallel projection, drawn with a depth buffer."""

@@ -97,7 +97,7 @@ def simplification(solid: Solid) -> str:
     >>> simplification(Block("steel", (0.1, 0.1, 0.01)))
     ''
     """
-    return "without holes" if isinstance(solid, SolidWithHoles) else "as the box around it" if isinstance(solid, Imported) else ""
+    return "without holes" if isinstance(solid, SolidWithHoles) else "as its bounding box" if isinstance(solid, Imported) else ""
 
 
 def solid_skin(solid: Solid) -> DrawnSurface:

@@ -72,7 +72,7 @@ def planes(corners: Array, values: Array) -> Array:
 
 
 def visible_lines(ends: Array, depth: Array) -> Array:
-    """Find the pixels (h, w) of lines between `ends` (e, 2, 3) [pixels] that are not hidden by triangles with this `depth` (h, w).
+    """Find the visible pixels (h, w) of lines between `ends` (e, 2, 3) [pixels]. `depth` (h, w) is the depth of triangles that hide lines.
 
     >>> visible_lines(np.array([[[0.5, 0.5, 1.0], [3.5, 0.5, 1.0]]]), np.array([[0.0, 9.0, 9.0, 9.0]])).tolist()
     [[True, True, False, False]]

@@ -32,7 +32,7 @@ class DrawnSurface:
     """A surface: `points` (n, 3) [m], `triangles` (t, 3) and sharp `edges` (e, 2) as indices of points.
 
     Corners of triangles are counter-clockwise as seen from outside. If the surface connects two bodies, point k moves by the weighted sum
-    of both motions: 1 - `share`[k] is the weight of the first body, `share`[k] the weight of the second body.
+    of the motions of the two bodies: 1 - `share`[k] is the weight of the first body, `share`[k] the weight of the second body.
     """
 
     points: Array
@@ -72,8 +72,8 @@ def loft(
     """Build the surface through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first.
 
     If `closed`, the surface has end faces. `shares` (s,) are the weights of the second of two bodies that move the rings (see
-    `DrawnSurface`), by default evenly spaced from 0 at the first ring to 1 at the last. The rings with indices `ringed` are sharp edges,
-    and so are the lines from ring to ring through the points that `along` selects (`ROUND`: none).
+    `DrawnSurface`), by default evenly spaced from 0 at the first ring to 1 at the last. The rings with indices `ringed` are sharp edges.
+    The lines from ring to ring through the points that `along` selects are sharp edges too (`ROUND` selects no point).
 
     >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     >>> box = loft(np.stack([square, square + [0, 0, 1.0]]))

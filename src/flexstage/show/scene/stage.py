@@ -46,9 +46,9 @@ class DrawnPiece:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Pieces and labels in the stage's frame [m]; `size` is the diagonal of the box around everything.
+    """Pieces and labels in the stage's frame [m]; `size` is the diagonal of the bounding box.
 
-    `references` contains the point (3,) [m] of each body at which its twist is given.
+    `references` contains, for each body, the point (3,) [m] at which the body's twist is given.
     """
 
     pieces: tuple[DrawnPiece, ...]
@@ -61,7 +61,7 @@ def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
     """Build the scene of the first design of a description. Hinges are divided into `steps` along their length, to show bending.
 
     Bodies without outlines, and superelements, are drawn as bars between their joints or ports. If a joint is outside the outline of its
-    body, a thin line connects the two. The ground is drawn at each link that is fixed to it.
+    body, a thin line connects the joint and the outline. The ground is drawn at each link that is fixed to it.
 
     >>> scene(Mechanism("", bodies={})).pieces
     ()

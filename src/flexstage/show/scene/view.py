@@ -134,7 +134,7 @@ def show_image(axes: Any, image: Array) -> None:
 
 
 def draw(axes: Any, data: StageData, seen: View, points: Array | None = None, kinds: Container[Kind] = tuple(Kind)) -> None:
-    """Draw the parts of these kinds as an image on axes prepared by `fit`. `points` (n, 3) [m] are positions of displaced vertices.
+    """Draw the parts of the `kinds` as an image on axes prepared by `fit`. `points` (n, 3) [m] are positions of displaced vertices.
 
     The platform is translucent, so that parts under it are visible.
     """
@@ -179,7 +179,7 @@ def _tones(normal: Array) -> Array:
 
 
 def edges_of(data: StageData, seen: View, kind: Kind) -> Array:
-    """Project the sharp edges of the solids of a kind to one line (3 e, 2) [mm], interrupted by NaN after each edge.
+    """Project the e sharp edges of the solids of a kind to one line (3 e, 2) [mm], with NaN after each edge.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data

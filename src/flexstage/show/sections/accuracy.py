@@ -21,8 +21,8 @@ def drift_section(analysis: Analysis) -> Section | None:
     if drift is None:
         return None
     text = (
-        "All bodies and parts expand freely; the elasticity of the links determines the resulting motion. It is listed per kelvin of "
-        "uniform temperature change, and per temperature gradient of 1 K/m."
+        "All bodies and parts expand freely; the elasticity of the links determines the resulting motion. The motion is listed per kelvin "
+        "of uniform temperature change, and per temperature gradient of 1 K/m."
     )
     gauges = gauge_drift_table(drift)
     return section("Thermal drift", [Prose(text), drift_table(drift), fold("Gauge readings", gauges)])

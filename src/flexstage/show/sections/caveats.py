@@ -10,7 +10,7 @@ from flexstage.show.tables.caveats import warning_table
 
 
 def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Section | None:
-    """Make the section of warnings about the description, warnings `more` about the result, and default values; `None` if there are none.
+    """Make the section of warnings about the description and the result (`more`), and of default values; `None` if it is empty.
 
     >>> caveat_section(Mechanism("stage")) is None
     True

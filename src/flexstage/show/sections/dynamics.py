@@ -24,7 +24,7 @@ from flexstage.show.viewer.motions import Group
 _SHAPES = 6
 _LEAST, _NAMED = 0.01, 4
 SHAPES = (
-    "The amplitude is arbitrary. Dashed: the undeformed platform. Blue arrow: its translation. Red arrow: its rotation. In-plane modes are "
+    "The amplitude is arbitrary. Dashed: the undeformed platform. Blue arrow: translation. Red arrow: rotation. In-plane modes are "
     "seen from above."
 )
 

@@ -96,7 +96,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
             BlockRow((Picture(polar, caption), BlockRow((centre_table(statics), *sag)))),
             result_table(analysis.units or {}),
             fold(
-                "Compliance, stiffness by angle, mass, spring constants of the lever units",
+                "Compliance, in-plane stiffness against direction, mass, spring constants of the lever units",
                 compliance_table(statics),
                 direction_table(statics),
                 *(() if analysis.mass is None else mass_tables(analysis.mass)),
@@ -137,7 +137,7 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
             fold("Lost motion and energy by part", budget_table(lost), energy_table(lost)),
             Folded("Gains, crosstalk, corrected mapping", (gain_table(lost), crosstalk_table(lost), correction_table(lost))),
             *[
-                fold(f"Terms in the transmission ratio of unit {name} that Eq. 3 omits", omitted_table(unit.omitted))
+                fold(f"Terms in the transmission ratio of unit {name} that Eq. 3 of Shin & Moon omits", omitted_table(unit.omitted))
                 for name, unit in (analysis.units or {}).items()
                 if unit.omitted is not None
             ],

@@ -13,7 +13,7 @@ from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_ta
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
-    """Make the section on the platform's workspace, actuators and gauges; `None` if the strokes do not determine the platform's pose.
+    """Make the section on the workspace of platform, actuators and gauges, or on the force workspace; `None` without either workspace.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -56,7 +56,7 @@ def strength_section(analysis: Analysis) -> Section | None:
 
 def _strength(reach: Workspace) -> list[Block | None]:
     stressed = reach.stress is not None and bool(reach.stress.links)
-    text = "Stress, buckling, loads: with permanent load, the worst values at all corners of the stroke ranges, from zero voltage."
+    text = "Stress, buckling and loads are the worst values at all corners of the strokes from zero voltage, under permanent load."
     return [
         Prose(text) if stressed else None,
         weakest_first(reach.stress),

@@ -23,7 +23,7 @@ _SIDES = (
 
 
 def stage_section(data: StageData, *, motion: str | None = None, ghost: str = "", said: str = "") -> Section | None:
-    """Make the section of the animated stage. It shows the page's data "stage" and, in the background, the data named `ghost`.
+    """Make the section of the animated stage. It shows the stage named "stage" in the page and, in the background, the stage named `ghost`.
 
     The animation starts with `motion`, by default the `first_motion` of the data. `said` is the text below the stage.
 
@@ -32,7 +32,7 @@ def stage_section(data: StageData, *, motion: str | None = None, ghost: str = ""
     >>> stage_section(still_data(double_triangle())).title
     'The stage'
     """
-    caption = "Rigid bodies as described, the platform translucent. A thin line connects a hinge to a body whose outline ends before it."
+    caption = "The platform is translucent. A thin line connects a hinge to its body if the outline of the body does not reach the hinge."
     picture = Picture(to_svg(stage_picture(data), "corner", "The stage from above its front corner"), caption)
     viewer = Viewer("stage", (picture,), first_motion(data) if motion is None else motion, ghost)
     return section("The stage", [viewer, Legend(legend(data)), Prose(said) if said else None])
@@ -62,7 +62,7 @@ def joined_viewers(partners: Sequence[tuple[str, str]]) -> JoinedViewers | None:
 
 
 def first_motion(data: StageData) -> str:
-    """Return the name of the first motion of a viewer: the platform's lowest mode, else the first motion, else an empty string.
+    """Return the motion that a viewer shows first: the platform's lowest mode, else the first mode or motion, else an empty string.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import stage_data

@@ -136,7 +136,7 @@ def provenance_table(mechanism: Mechanism) -> Table:
 
 
 def source_table(mechanism: Mechanism) -> Table | None:
-    """Tabulate the sources of tags, materials, parts and gauges; `None` without sources.
+    """Tabulate the sources to which tags refer, and those of materials, parts and gauges; `None` without sources.
 
     >>> source_table(Mechanism("")) is None
     True

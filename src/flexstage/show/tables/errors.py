@@ -53,7 +53,7 @@ def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:
     ['z [nm]', '336.76']
     """
     sums = first_design(budget.sums.values, 2)
-    titles = {"Error budget, command by ideal mapping": budget.ideal, "Error budget, command with corrected lost motion": budget.corrected}
+    titles = {"Error budget, command by ideal mapping": budget.ideal, "Error budget, command corrected for lost motion": budget.corrected}
     shown = {"Error budget in open loop, with forces from the elastic model": budget.ideal} if budget.forced else titles
     return tuple(
         _budget_table(title, matrix, sums[:, 2 * index : 2 * index + 2], budget) for index, (title, matrix) in enumerate(shown.items())

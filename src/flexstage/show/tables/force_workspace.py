@@ -22,7 +22,7 @@ def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
 
 
 def drive_force_tables(found: DriveForce | None) -> Iterator[Table | None]:
-    """Tabulate the drive force per displacement and its excess over the ideal guide, in total and by flexure; none if `found` is `None`.
+    """Tabulate the drive force per displacement and its excess over that of the ideal guide, in total and by flexure; no table for `None`.
 
     >>> list(drive_force_tables(None))
     []
@@ -35,5 +35,5 @@ def drive_force_tables(found: DriveForce | None) -> Iterator[Table | None]:
         for place, name in enumerate(found.shares.columns)
         for text, matrix in (("", found.shares), (", excess", found.excess))
     }
-    notes = ["Contribution of each flexure to the drive force, and to its excess over that of the ideal guide."]
+    notes = ["Contribution of each flexure to the drive force, and to the excess of this force over that of the ideal guide."]
     yield merge_rows(make_table("Drive force by flexure", ["part", *columns], share_rows(columns, "all"), notes=notes))

@@ -58,7 +58,7 @@ def _command_text(kinematics: Kinematics) -> str:
     known = kinematics.commanded
     left = [name for name in kinematics.coordinates if name not in known]
     reach = f"they can command {', '.join(known)} independently" if known else "they can command no coordinate independently"
-    rest = f", but not along {', '.join(left)}" if known and left else ""
+    rest = f", but not {', '.join(left)}" if known and left else ""
     forces = count_text(len(kinematics.thrusts), "force actuator")
     return f"{forces}: forces do not determine motions; {reach}{rest}. The elastic model computes the travel."
 
@@ -84,7 +84,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
 
 
 def mapping_table(kinematics: Kinematics) -> Table:
-    """Tabulate the mapping R_a = da/dxi, the stroke of each actuator per platform motion.
+    """Tabulate the mapping R_a = da/dxi: the strokes a of the actuators per ideal platform motion xi.
 
     Raises `DesignError` if the stage is under-actuated.
 
@@ -97,7 +97,7 @@ def mapping_table(kinematics: Kinematics) -> Table:
 
 
 def gauge_table(kinematics: Kinematics) -> Table:
-    """Tabulate the mapping R_s = ds/dx, the reading of each gauge per motion of the platform.
+    """Tabulate the mapping R_s = ds/dx: the readings s of the gauges per platform motion x.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -108,7 +108,7 @@ def gauge_table(kinematics: Kinematics) -> Table:
 
 
 def jacobian_table(kinematics: Kinematics) -> Table:
-    """Tabulate the Jacobian J = dx/da, the motion of the platform per stroke of each actuator.
+    """Tabulate the Jacobian J = dx/da: the platform motion x per actuator stroke a.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -146,5 +146,5 @@ def freedom_table(kinematics: Kinematics) -> Table:
     ['back (B1, B2, B3)', 'rx, ry, rz']
     """
     free = {link: ", ".join(freedom.value for freedom in freedoms) or "none" for link, freedoms in kinematics.free.items()}
-    notes = ["In the frame of each link, with x along the part."]
+    notes = ["DOFs are in the frame of each link, with x along the part."]
     return merge_rows(make_table("Free DOFs of the links in the ideal model", ["link", "free"], free.items(), notes=notes))

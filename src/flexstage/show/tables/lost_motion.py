@@ -59,8 +59,8 @@ def _zero_if_noise(share: float) -> float:
 def budget_table(lost: LostMotion) -> Table | None:
     """Tabulate the contributions of links to every actuator's loss; each column adds up to the loss.
 
-    Links of the actuator's unit are listed by axis, links of other units by name. Returns `None` for a stage about an operating point,
-    because that model has no budget.
+    Links of the actuator's unit are listed by axis, links of other units by name. Returns `None` for a stage at an operating point, because
+    the model of this stage has no budget.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -112,7 +112,7 @@ def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str],
 def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
     """Make a row of contributions for each link, the largest first, with a column for each actuator.
 
-    Negligible links are combined in one row. The last row is the `total`.
+    Negligible links are combined in one row. The last row contains the sums under the name `total`.
     """
     parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
     size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
@@ -129,7 +129,7 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """From links `ranked` by contribution, select links in instances of units that contribute significantly to a loss in `columns`.
+    """From links `ranked` by contribution, select the links in unit instances with a significant contribution to a loss in `columns`.
 
     >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
     ['B2/front']
@@ -154,7 +154,7 @@ def _share_cell(share: float) -> Cell:
 
 
 def gain_table(lost: LostMotion) -> Table:
-    """Tabulate T = dx/da, the motion of the platform per stroke of each actuator in the elastic model.
+    """Tabulate T = dx/da: the platform motion x per actuator stroke a in the elastic model.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -176,12 +176,12 @@ def crosstalk_table(lost: LostMotion) -> Table:
     >>> crosstalk_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][4]
     '0.96632'
     """
-    note = "Rows: motion, converted to actuator strokes. Columns: commanded actuator. Without elasticity, this is the identity matrix."
+    note = "Rows: motion, converted to actuator strokes. Columns: commanded actuator. Without elasticity, the table is the identity matrix."
     return matrix_table("Gain and crosstalk, R_a V+ T", lost.transfer, notes=[note])
 
 
 def parasitic_table(lost: LostMotion) -> Table | None:
-    """Tabulate the parasitic motion of the platform per stroke, outside its ideal motions; `None` without parasitic motion.
+    """Tabulate the parasitic motion per stroke: platform motion outside the ideal motions; `None` without parasitic motion.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

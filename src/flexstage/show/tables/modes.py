@@ -7,14 +7,14 @@ from flexstage.models.batch.choice import THRESHOLD
 from flexstage.show.display import percent
 from flexstage.show.table import Table, batch_note, result_table
 
-PLATFORM_MODES = f"With each platform mode, the sum reaches {percent(THRESHOLD, 2)} of the platform's compliance in one more direction."
+PLATFORM_MODES = f"Each platform mode adds a direction in which modes up to it reach {percent(THRESHOLD, 2)} of the platform compliance."
 """Note on the criterion for platform modes."""
 
 _FURTHER = 3
 
 
 def mode_table(modes: Modes) -> Table | None:
-    """Tabulate frequencies, names, energy fractions and planes of modes, up to the third above the highest platform or local mode.
+    """Tabulate frequencies, names, energy fractions and planes of modes, up to the third mode above the highest platform or local mode.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

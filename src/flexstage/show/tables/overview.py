@@ -61,7 +61,7 @@ def load_line(analysis: Analysis) -> str | None:
 
 
 def floating_line(model: LinearModel | None) -> str | None:
-    """Describe motions of the platform without stiffness, and the actuators that drive them; `None` without such motions.
+    """Describe platform motions without stiffness, and the actuators that drive them; `None` if all platform motions have stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -122,7 +122,7 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
 
 
 def axis_table(analysis: Analysis) -> Table | None:
-    """Tabulate the platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has no such results.
+    """Tabulate the platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has none of these results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -153,7 +153,7 @@ def _axis_note(analysis: Analysis) -> str:
         "Strokes: one axis at a time, with corrected lost motion": analysis.workspace is not None and analysis.lost_motion is not None,
         "Strokes: one axis at a time": analysis.workspace is not None and analysis.lost_motion is None,
         "Strokes: elastic motion that can be held continuously": analysis.force_workspace is not None,
-        "Stiffness: under a load along that axis, with fixed actuators and the other axes free": analysis.statics is not None,
+        "Stiffness of an axis: under a load along this axis, with fixed actuators and the other axes free": analysis.statics is not None,
         "Resolution: largest pose error if the reading of every gauge is wrong by one step": bool(_resolution(analysis)),
     }
     return "".join(f"{text}. " for text, there in said.items() if there).rstrip()
@@ -208,7 +208,7 @@ def _platform_modes(modes: Modes) -> Table | None:
     if modes.local:
         lowest = number(modes.mode(min(modes.local)).frequency, _DIGITS)
         count = count_text(len(modes.local), "local mode")
-        notes = [f"{count}, {lowest} Hz to 1.5 times the highest."]
+        notes = [f"{count} between {lowest} Hz and 1.5 times the highest platform frequency."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
     return None if table is None else merge_rows(table)

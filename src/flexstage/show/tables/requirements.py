@@ -76,7 +76,7 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
 
 
 def rank(verdict: Verdict) -> tuple[bool, bool, float]:
-    """Return a sort key: unknown, failed, met; the smallest margin first, margins to limits of zero last, because they are not relative.
+    """Return a sort key: first unknown, then failed, then met; smallest margin first; margins to limits of zero last, as they are absolute.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -112,7 +112,7 @@ def value_text(verdict: Verdict) -> str:
 
 
 def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str:
-    """Format an SI value in the display unit of its quantity, or in a smaller unit if it is below a hundredth of that unit.
+    """Format an SI value in the display unit of its quantity, or in a smaller unit if the number would be below 0.01.
 
     >>> from flexstage.base.units.quantity import STIFFNESS
     >>> quantity_text(17e6, STIFFNESS), quantity_text(420.0, STIFFNESS)

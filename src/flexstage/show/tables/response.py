@@ -49,7 +49,7 @@ def _leading_input(gains: Array) -> int:
 
 
 def response_table(response: Response) -> Table:
-    """Tabulate the gain at the lowest frequency, the highest magnitude and its frequency, for each output and its leading input.
+    """Tabulate low-frequency gain, highest magnitude and its frequency for each output and its leading input (see `leading_curves`).
 
     Rounding noise is shown as 0.
 

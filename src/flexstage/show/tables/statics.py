@@ -85,7 +85,7 @@ def _points(statics: Statics) -> str:
 
 
 def direction_table(statics: Statics, load: float = _LOAD) -> Table:
-    """Tabulate displacement and stiffness for several directions of a force `load` [N] in the plane, as Shin & Moon (Table 1).
+    """Tabulate displacement and stiffness for several directions of a force `load` [N] in the plane, as in Table 1 of Shin & Moon.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -99,7 +99,7 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
     with np.errstate(divide="ignore"):
         values = np.stack([load / free, free, held], axis=-1)
     found = Matrix(values, tuple(map(str, degrees)), heads, (("m", "N/m", "N/m"),) * len(degrees))
-    return column_table("Stiffness by direction in the plane", found, head="direction [deg]", notes=["From x towards y."])
+    return column_table("Stiffness by direction in the plane", found, head="direction [deg]", notes=["Measured from x towards y."])
 
 
 def _along(stiffness: DirectionalStiffness, angles: Array) -> Array:

@@ -23,7 +23,7 @@ def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
 
 
 def omitted_table(found: Omitted, *, top: int = 12) -> Table | None:
-    """Tabulate the effect on a gain of each DOF that a simpler theory omits: the `top` DOFs individually, the others in one row.
+    """Tabulate how each DOF that a simpler theory omits changes a gain: the `top` largest changes individually, the others in one row.
 
     >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1, "lever.x": 1e-15})).texts()[2:4]
     [['lever.rz', '-0.1', '-5.26 %'], ['further DOFs', '+0', '0 %']]

@@ -52,7 +52,7 @@ def corner_table(corner: Utilisation) -> Table | None:
 def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
     """Tabulate gauge readings at the worst combination of commands, their ratios to the gauges' ranges, and the pose resolution."""
     gauges = workspace.gauges
-    yield None if gauges is None else result_table(gauges, notes=[f"Worst combination of {command_text(gauges.command)}."])
+    yield None if gauges is None else result_table(gauges, notes=[f"Values at the worst combination of {command_text(gauges.command)}."])
     yield result_table(workspace.resolution)
 
 
@@ -68,7 +68,7 @@ def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
 
 
 def weakest_first(found: HingeStress | Buckling | None) -> Table | None:
-    """Tabulate stress or buckling loads: unknown safety factors first, then the smallest. Rows with equal cells are merged."""
+    """Tabulate stress or buckling loads: unknown safety factors first, then in ascending order. Rows with equal cells are merged."""
     table = result_table(found)
     if found is None or table is None:
         return None

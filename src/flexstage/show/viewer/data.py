@@ -53,9 +53,9 @@ _LOADED = ", small motions about the loaded stage"
 class StageData:
     """Data of a viewer for a stage: its mesh, its parts by number, and its motions.
 
-    `bodies` are in the sequence of twists, the ground first. `size` [m] is the diagonal of the box around everything, and `centre` (3,) [m]
-    is its middle. `bones` are the bodies with their reference points. `things` are the drawn parts. `notes` list the simplifications of the
-    picture with reasons.
+    `bodies` are the names of the bodies in the order of twists, the ground first. `size` [m] is the diagonal of the bounding box of the
+    mesh, and `centre` (3,) [m] is the middle of the box. `bones` are the bodies with their reference points. `things` are the drawn parts.
+    `notes` list the simplifications of the picture with reasons.
     """
 
     name: str

@@ -27,7 +27,7 @@ def element(key: str, *, motion: str = "", instead: str = "") -> str:
 
 
 def data_script(key: str, data: StageData) -> str:
-    """Write the script element with a stage's data, once in a page for all viewers with this `key`.
+    """Write the script element with a stage's data, which a page needs once for all viewers with this `key`.
 
     Every "<" in the data is escaped, so that no text can end the script.
     """
@@ -41,7 +41,7 @@ def bundle() -> str:
 
 
 def bundle_script() -> str:
-    """Write the script element with the viewer's program, once in a page, after all elements and data.
+    """Write the script element with the viewer's program; a page needs it once, after all elements and data.
 
     >>> bundle_script().count("</script>")
     1

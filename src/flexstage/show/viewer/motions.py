@@ -101,7 +101,7 @@ class Motion:
 
     `name` is unique in its group; `remark` contains further information; modes have a `frequency` [Hz]. `energy` contains the strain-energy
     fractions of links and other elastic parts by name, `None` if unknown. `stress` contains the stress utilisation of links by name;
-    `stressed` describes the state to which it applies, such as the full stroke. The amplitudes of all motions except modes are physical. A
+    `stressed` describes the state of this utilisation, such as the full stroke. The amplitudes of all motions except modes are physical. A
     motion with large displacements, along a path or about a displaced state, has a `course` instead of twists. Motions over time have a
     `response`; their twists belong to the time of the largest displacement.
     """

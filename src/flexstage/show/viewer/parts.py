@@ -23,7 +23,7 @@ Fact = tuple[str, str]
 
 @dataclass(frozen=True)
 class DrawnEntry:
-    """A drawn part, body, gauge or ground: `what` is its kind, `unit` the instance to which it belongs.
+    """A drawn part, body, gauge or ground: `what` is its kind, `unit` is the instance to which the entry belongs.
 
     `address` and `line` locate the entry in the design file. `facts` are pairs of a name and a value with its unit of measurement.
     """

@@ -23,7 +23,7 @@ _STYLE = (
 
 @dataclass(frozen=True, eq=False)
 class View(CheckedFields):
-    """An interactive stage with its motions. Notebooks show it; `save` writes it as a self-contained page.
+    """Interactive view of a stage with its motions. Notebooks show the view; `save` writes it as a self-contained page.
 
     `motion` is the first motion shown. `height` is the height of the frame in a notebook, in pixels. `picture` (HTML) replaces the view in
     print and without WebGL.
@@ -52,12 +52,12 @@ class View(CheckedFields):
 
 @check_arguments
 def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
-    """Show the moving stage of a description (first design of a batch).
+    """Return an interactive view of a stage with its motions (for a batch, of the first design).
 
-    The view starts with `motion`, e.g. "stroke B1", "axis x" or "deflection own weight"; by default with "mode 1", or undeformed if there
-    are no modes. Modes, unit strokes and deflections are computed with the lumped model, motions of the platform with the ideal model. The
-    viewer lists the reasons for missing motions. Small motions are magnified by the displayed factor. Raises `DesignError` if the stage
-    cannot be drawn.
+    The view starts with `motion`, e.g. "stroke B1", "axis x" or "deflection own weight". By default, it starts with "mode 1", or with the
+    undeformed stage if there are no modes. Modes, unit strokes and deflections are computed with the lumped model, motions of the platform
+    with the ideal model. The viewer lists the reasons for missing motions. Small motions are magnified by the displayed factor. Raises
+    `DesignError` if the stage cannot be drawn.
 
     >>> import flexstage as fs
     >>> fs.view(fs.case("parallelogram")).html[:15]

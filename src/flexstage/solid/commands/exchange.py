@@ -1,4 +1,4 @@
-"""Commands about solids in files: `cad` writes a stage (STEP, VTU, GLB), `import` reads a STEP file, `superelement` writes matrices."""
+"""Commands for files of solids: `cad` writes a stage (STEP, VTU, GLB), `import` reads a STEP file, `superelement` writes matrices."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def cad(
     modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
 ) -> None:
-    """Write a stage as solids.
+    """Write the solids, mesh or animated modes of a stage.
 
     Writes a STEP assembly of named solids (--output), the mesh (--mesh) or animated modes (--gltf). --order applies to --mesh and
     --gltf; --modes applies to --gltf.
@@ -57,19 +57,24 @@ def state(
     design: Design,
     *,
     material: Annotated[
-        str | None, typer.Option("--material", help="Material of the solid. Default: the only material of the design.", show_default=False)
+        str | None,
+        typer.Option(
+            "--material",
+            help="Material of the solid. Required if the design has several materials. Default: the material of the design.",
+            show_default=False,
+        ),
     ] = None,
-    body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body that gets the outline.")] = "platform",
+    body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body to which the outline belongs.")] = "platform",
     solid: Annotated[
         str | None,
-        typer.Option("--solid", metavar="NAME", help="Solid of an assembly, by name or number, e.g. #2.", show_default=False),
+        typer.Option("--solid", metavar="NAME", help="Solid to import from an assembly, by name or number, e.g. #2.", show_default=False),
     ] = None,
 ) -> None:
-    """Import a STEP file as an outline of a body.
+    """Import a STEP file as an outline (solid shape) of a body.
 
-    Prints the TOML table for the design file: file, digest, size, mass, centre of mass and inertia.
+    Prints the TOML table of the outline for the design file: file, digest (checksum), size, mass, centre of mass and inertia.
 
-    Models with rigid bodies use these values. The solid model uses the geometry of the file, and checks these values against it.
+    Models with rigid bodies use these values. The solid model uses the geometry of the file, and compares the values with this geometry.
     """
     mechanism = load(design)
     chosen = _material(mechanism, material)
@@ -85,18 +90,18 @@ def superelement(
     design: Design,
     solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link that belongs to the solid.", show_default=False)],
     *,
-    output: Annotated[Path, output_option("FRAME.NPZ", "NPZ file of stiffness and mass.")],
+    output: Annotated[Path, output_option("FRAME.NPZ", "NPZ file of the stiffness and mass matrices.")],
     order: Annotated[int, order_option(min=1)] = 3,
     modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
 ) -> None:
     """Reduce one solid of a stage to a superelement.
 
-    Writes stiffness and mass matrices for the motions of the ports and the modes with fixed ports. Prints the TOML table of the part, for
-    a design file in the folder of the matrices.
+    Writes the stiffness and mass matrices of the superelement. Their coordinates are the motions of the ports and the modes with fixed
+    ports. Prints the TOML table of the superelement, for a design file in the same folder as the matrices.
 
-    The solid includes all links and bodies that are one piece with SOLID. The ports are the end faces of links that join this solid to
-    other bodies, stacks or the ground.
+    The solid consists of SOLID and of all links and bodies that form one piece with it. A port is the end face of a link that joins the
+    solid to another body, to a stack or to the ground.
     """
     mechanism = open_design(design, changes, [("--output", output)])
     require_solver()

@@ -14,7 +14,7 @@ from flexstage.solid.results.resolution import DEFAULT
 
 
 def fea_modes(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
-    """Return computed modes if `computing`, else those in the cache; if the cache has none, print a note on --fea."""
+    """Return newly computed modes if `computing`, else the modes in the cache; if the cache has no modes, print a note on --fea."""
     if computing:
         with progress_bar() as shown:
             return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step, notice=print_warning)))

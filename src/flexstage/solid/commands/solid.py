@@ -70,7 +70,7 @@ else:  # reports are rare
 
 
 class Scope(Enum):
-    """Scope of a solid study: each distinct hinge, each distinct isolated unit, or the whole stage."""
+    """Scope of a study of solids: each distinct hinge, each distinct isolated unit, or the whole stage."""
 
     HINGE = "hinge"
     UNIT = "unit"
@@ -102,7 +102,7 @@ class SolidOptions:
 
     @property
     def resolution(self) -> Resolution:
-        """Return the required accuracy and element order. Raises `DesignError` for values out of range."""
+        """Required accuracy and element order. Raises `DesignError` if the accuracy is out of range."""
         share = parse(self.accuracy, RATIO, where="--accuracy")
         if not 1e-6 <= share < 1.0:
             what = f"must be between 1e-6 and 1 (got {self.accuracy})"
@@ -110,7 +110,7 @@ class SolidOptions:
         return Resolution(share, self.order)
 
     def ways(self, shown: ProgressBar, pool: Pool | None = None) -> Ways:
-        """Return the options of the jobs, with the user's cache and progress. Raises `DesignError` for an invalid size of memory."""
+        """Return the options of the jobs, with the user's cache and progress. Raises `DesignError` for an invalid memory size."""
         return Ways(Cache(), shown.step, Limits(memory=_size(self.memory)), pool, print_warning, print_note)
 
 
@@ -137,10 +137,10 @@ def solid(
 ) -> CommandResult:
     """Analyse a stage as elastic solids by finite elements.
 
-    With scope hinge, computes the 6x6 compliance matrix of every hinge. With scope unit, computes stiffness, lost motion and stress of
-    isolated units. With scope stage, computes stiffness, modes and stress of the stage.
+    With --scope hinge, computes the 6x6 compliance matrix of every hinge. With --scope unit, computes stiffness, lost motion and stress of
+    isolated units. With --scope stage, computes stiffness, modes and stress of the stage.
 
-    The cache keeps reduced components for later commands.
+    Reduced components are stored in a cache for later commands.
     """
     resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
@@ -166,7 +166,7 @@ def verify(
     """Compare theory with finite elements.
 
     For hinges, units and the whole stage, compares four models: axial springs, lumped, lumped with calibrated hinges, and FEA. Results
-    with calibrated parts are not independent of FEA.
+    with calibrated hinges are not independent of FEA, because their compliance matrices come from FEA.
     """
     resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
@@ -218,8 +218,8 @@ def calibrate(
 ) -> CommandResult:
     """Compute the 6x6 compliance of hinges by finite elements.
 
-    Writes a design file in which hinges have compliance matrices from FEA, for a more accurate lumped model. Comments and the
-    original hinges are kept.
+    Writes a design file in which the hinges have compliance matrices from FEA, for a more accurate lumped model. The file also contains
+    the comments and, under the name NAME-drawn, each original hinge.
     """
     resolution = options.resolution
     text = read_text(design)
@@ -340,7 +340,7 @@ def _accuracy_warnings(what: str, found: Converged[Any], resolution: Resolution)
 
 def _accuracy_text(found: Converged[Any]) -> str:
     size = f"{100.0 * max(found.errors.values()):.2g} %" if found.errors else "unknown"
-    more = f", {found.order + 1} in {found.raised} of the components" if found.raised else ""
+    more = f" ({found.order + 1} in {found.raised} of the components)" if found.raised else ""
     if found.unestimated:
         locked, number = ", ".join(found.unestimated[:3]), len(found.unestimated)
         more = f"; for {number} other figures ({locked}{', ...' if number > 3 else ''}), {NOT_ESTIMATED.partition('. ')[0]}"

@@ -21,10 +21,10 @@ from flexstage.solid.fea.solver.component import groups
 from flexstage.solid.fea.solver.surface import vertex_places
 
 _KEYS = 33
-"""Keyframes of one period: the error of linear interpolation is below 0.5 % of the amplitude."""
+"""Number of keyframes in one period: the error of linear interpolation is below 0.5 % of the amplitude."""
 _SECONDS = 1.0
 _LARGEST = 0.05
-"""The largest displacement of an animation over the diagonal of the stage."""
+"""Largest displacement of an animation, divided by the diagonal of the stage."""
 _UPRIGHT = [-float(np.sqrt(0.5)), 0.0, 0.0, float(np.sqrt(0.5))]
 """Quaternion of the rotation from z up to y up."""
 _LINK: Colour = (0.80, 0.81, 0.83)

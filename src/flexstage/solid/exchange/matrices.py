@@ -1,4 +1,4 @@
-"""Export of the reduced matrices of one solid of a stage, as a superelement for theory and other programs."""
+"""Export of one solid of a stage as a superelement with reduced matrices, for theory and other programs."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ def export_superelement(
     """Reduce one solid of a stage by finite elements, write its matrices to an NPZ file, and return the part that they define.
 
     The solid contains the body or link of this `name` and all parts of the same component (see `fea.solver.component`). The ports of the
-    solid are the end faces of links where the solid meets the ground, rigid bodies, stacks or other units. The faces remain plane. A port
-    has the name of its link (`left`, or `left-platform` if both ends of the link are ports). The frame of a port is at the middle of the
-    face. The axes of a port are those of the stage, of the unit that contains the solid, or of the link if the solid is a single link.
+    solid are end faces of links at which the solid meets the ground, rigid bodies, stacks or other units. The end faces remain plane. A
+    port has the name of its link (`left`, or `left-platform` if both ends of the link are ports). The frame of a port is at the middle of
+    the face. The axes of a port are those of the stage, of the unit that contains the solid, or of the link if the solid is a single link.
 
     Stiffness `K` and mass `M` are in SI units. The first coordinates of both matrices are the twists of the ports. The inner coordinates
     are the `reduction.modes` lowest modes with all ports fixed, and static responses that replace the omitted modes. The static responses
-    are due to wrenches on the bodies and to the inertia of the ports' motions.
+    are due to wrenches on the bodies and to the inertia forces of the ports' motions.
 
-    Raises `DesignError` for the errors of `model`, for an unknown name, for fewer than two ports, and for a stack, because the matrices
-    cannot represent its stroke.
+    Raises `DesignError` in the same cases as `model`, and if the name is unknown, the solid has fewer than two ports, or the solid contains
+    a stack. The matrices cannot represent the stroke of a stack.
     """
     target = Path(path)
     if target.suffix != ".npz":

@@ -96,7 +96,7 @@ class Part:
 
 
 def stage_parts(stage: Stage) -> tuple[Part, ...]:
-    """Return the solids of a stage: one for each link, one for each material of each body, one for each outline of the ground.
+    """Return the solids of a stage: one for each link, one for each material of each body, and one for each outline of the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [part.name for part in stage_parts(stage_pieces(parallelogram()))]

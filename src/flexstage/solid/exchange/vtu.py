@@ -1,7 +1,7 @@
 """VTU files: the meshes of all components of a stage as one unstructured grid of quadratic tetrahedra, in metres.
 
 Each cell has the numbers of its piece, of its body or link, of its material and of its component. A comment at the start of the file lists
-the name of each number. Components do not share points at their interfaces: the model joins them by coordinates, not by nodes.
+the name that belongs to each number. Components do not share points at their interfaces: the model joins them by coordinates, not by nodes.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class StageMesh:
 
 
 def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMITS, progress: Progress | None = None) -> StageMesh:
-    """Mesh every distinct component once, in a separate process, and place its mesh at every instance.
+    """Mesh every distinct component once, in a separate process, and place the mesh at every instance of the component.
 
     Raises `DesignError` if the outlines do not form solids or cannot be meshed, and for a stage without any shape.
 

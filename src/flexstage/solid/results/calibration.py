@@ -1,4 +1,4 @@
-"""Calibration of the lumped model: the 6x6 compliance matrix of hinges from finite elements replaces that of beam theory."""
+"""Calibration of the lumped model: 6x6 compliance matrices of hinges from finite elements replace the matrices from beam theory."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Calibration(InNotebook):
     def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
         """Relative differences (6,) between direct compliances by FEA and by beam theory, along and about x, y, z, by name of the part.
 
-        NaN for compliances that FEA cannot separate from the adjacent blocks, which are from beam theory.
+        A difference is NaN if FEA cannot separate the compliance from the adjacent blocks; beam theory then provides the compliance.
         """
         return {
             name: np.where(
@@ -59,10 +59,10 @@ class Calibration(InNotebook):
 
 @check_arguments
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
-    """Compute the 6x6 compliance matrix of every distinct hinge in a design file's text, and insert the results; comments are kept.
+    """Compute the 6x6 compliance matrix of every distinct hinge in a design file's text, and insert the matrices; comments are kept.
 
-    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. Also
-    raises `DesignError` if the error of a matrix by FEA is unknown or above 10 %.
+    Raises `DesignError` for hinges that are calibrated already, that have overrides in single instances, or that are members of a compound.
+    Also raises `DesignError` if the error of a matrix by FEA is unknown or above 10 %.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
@@ -77,8 +77,8 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
 def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
     """Convert computed hinges to parts with compliance matrices, with the mass and the intended DOFs of the drawn hinges.
 
-    Each matrix has the symmetry of the drawn hinge. In a DOF in which FEA cannot separate the hinge from the adjacent blocks, the matrix
-    has the value of beam theory. Raises `DesignError` if the error of a matrix is unknown or above 10 %.
+    Each matrix has the symmetry of the drawn hinge. For a DOF in which FEA cannot separate the hinge from the adjacent blocks, the matrix
+    contains the value of beam theory. Raises `DesignError` if the error of a matrix is unknown or above 10 %.
 
     >>> stand_ins({})
     {}

@@ -1,4 +1,4 @@
-"""6x6 compliance matrix of every distinct hinge of a stage, by finite elements of the isolated hinge with its roots in the stage.
+"""6x6 compliance matrix of every distinct hinge of a stage, by finite elements of the isolated hinge with the roots it has in the stage.
 
 A root is the elastic block to which an end of the hinge is attached. The compliance of the roots belongs to the hinge, because models with
 rigid bodies contain no other compliance of the blocks. A part used with different roots counts as several hinges.
@@ -54,7 +54,7 @@ class DistinctHinge:
 
 @dataclass(frozen=True, eq=False)
 class SolidHinge(DistinctHinge, InNotebook):
-    """A distinct hinge with its computed compliance: between the ends of its arcs, about its centre, in the link frame."""
+    """A distinct hinge with its computed compliance between the ends of its arcs; the compliance is about its centre, in the link frame."""
 
     found: Annotated[HingeSolid, INNER]
 
@@ -70,11 +70,11 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance is separable: it is at least 10 % of the compliance of hinge and stubs together.
+        """Whether each direct compliance is separable: at least 10 % of the direct compliance of hinge and stubs together.
 
         The solid contains stubs (pieces of the blocks) next to the hinge. The compliance of the stubs by beam theory with restrained
-        warping (Vlasov) is subtracted. In torsion, a wide notch is stiffer than its stubs; the result is then a small difference of two
-        large numbers, and beam theory of the stubs is too inaccurate.
+        warping (Vlasov) is subtracted. In torsion, a wide notch is stiffer than its stubs. The result is then a small difference of two
+        large numbers, for which beam theory of the stubs is too inaccurate.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
@@ -115,7 +115,7 @@ class SolidHinge(DistinctHinge, InNotebook):
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS) -> Hinges:
     """Return a function that computes compliance matrices of hinges to a relative accuracy, with elements up to this `order` (at least 3).
 
-    `ways` specifies cache, progress and processes. Every hinge is computed once, in parallel with others.
+    `ways` specifies cache, progress and processes. Every hinge is computed once, in parallel with the other hinges.
     """
     required = accuracy_of(accuracy, order)
 
@@ -126,7 +126,7 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
 
 
 def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
-    """Return the accuracy requirements of hinges: relative error, and orders of the elements up to `order` (at least three).
+    """Return the accuracy requirements of hinges: the relative error, and the element orders up to `order` (at least three).
 
     >>> accuracy_of(0.01, 2).orders
     (2, 3)
@@ -208,12 +208,12 @@ def require_hinges(found: Mapping[str, DistinctHinge]) -> None:
 
 
 def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:
-    """Transform the result `solved`, computed for a form of `turned_forms`, to the orientation of the drawn hinge."""
+    """Transform the result `solved` of FEA with an input from `turned_forms` to the orientation of the drawn hinge."""
     return SolidHinge(hinge.shared, hinge.form, hinge.links, _turn_back(solved, hinge.form))
 
 
 def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
-    """Return the forms of hinges to compute. A hinge with an elastic block only at its first end is mirrored.
+    """Return the inputs of FEA for hinges, by name. A hinge with a block only at its first end gets exchanged ends, unless it is a crystal.
 
     >>> turned_forms({})
     {}

@@ -1,4 +1,4 @@
-"""Modes by finite elements for comparisons: computed on request, else from the cache if it contains all components of the stage."""
+"""Modes by finite elements for comparisons: computed on request, or else read from the cache if it contains all components of the stage."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids 
 
 
 def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
-    """Return a stage's solid-model modes at the highest order for which all components are in the cache; `None` if there is no such order.
+    """Return a stage's modes by FEA at the highest order with all components in the cache; `None` if no order has all components there.
 
     >>> from pathlib import Path
     >>> from flexstage.cases.parallelogram import parallelogram

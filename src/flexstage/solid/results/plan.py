@@ -1,4 +1,4 @@
-"""Plans: the jobs of a study of solids that are known before the computation."""
+"""Plans: those jobs of a study of solids that are known before the computation."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Plan:
 
 
 def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hinges: Accuracy | None = None) -> Plan:
-    """Return the jobs that `verify` needs in any case: hinges, the stage and its isolated units at two orders.
+    """Return the jobs that `verify` needs in any case: hinges, and components of the stage and its isolated units at two orders.
 
     `of_hinges` is the required accuracy of hinges; by default, it follows from `asked`. Outlines are checked. Raises `DesignError` if the
     stage cannot be modelled as a solid or has no hinge.
@@ -59,7 +59,7 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
 
 def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *, bare: bool = False) -> Plan:
-    """Return the jobs that `solid` needs for stages as drawn: reductions of all components at two orders; with `bare`, without modes.
+    """Return the jobs that `solid` needs for stages as drawn: reductions of all components at two orders, without modes if `bare`.
 
     Outlines are checked. Raises `DesignError` if a stage cannot be modelled as a solid.
     """
@@ -73,7 +73,8 @@ def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *
 def work_ahead(plan: Plan, ways: Ways) -> None:
     """Run the planned jobs in one queue. The computations of hinges, stage and units then find their results in the pool of `ways`.
 
-    Raises `DesignError` if a needed job fails. The failure of any other job (of an isolated unit) is reported when the units are computed.
+    Raises `DesignError` if a needed job fails. All other jobs are of isolated units; their failures are reported when the units are
+    computed.
     """
     try:
         obtain(plan.jobs, ways)
@@ -84,7 +85,7 @@ def work_ahead(plan: Plan, ways: Ways) -> None:
 
 
 def units_alone(mechanism: Mechanism) -> list[Mechanism]:
-    """Return every distinct isolated unit as drawn, or no unit if the strokes do not determine its motion; this error is reported later.
+    """Return every distinct isolated unit as drawn; return no unit if the strokes do not determine the motion (an error reported later).
 
     >>> units_alone(Mechanism("nothing"))
     []

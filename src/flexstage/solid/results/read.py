@@ -1,4 +1,4 @@
-"""Solid model of a stage: reduction of its components, directly or from a cache with progress reports."""
+"""Solid model of a stage from its reduced components, which are computed, or read from a cache, with progress reports."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """Return a function that stores the results of `reduce`. For `raised` components, the function combines stored results of two orders.
+    """Return a function that stores the results of `reduce`. If components are `raised`, it combines stored results of two orders.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()
@@ -100,14 +100,15 @@ def model(
     progress: Progress | None = None,
     memory: float | None = None,
 ) -> LinearModel:
-    """Model a stage as 3-D elastic solids: finite elements of each distinct component, reduced by the Craig-Bampton method and joined.
+    """Model a stage as 3-D elastic solids: each distinct component by finite elements, reduced by the Craig-Bampton method, then joined.
 
     Inputs and outputs have the same names as in `lumped`. Every distinct component is meshed and reduced once, in a separate process, and
     stored in the `cache` (`None`: no cache). `progress` receives the step, the completed fraction and the remaining seconds. `memory`
     [bytes] limits the planned memory (default: the free memory of the machine).
 
-    Before meshing, raises `DesignError` for links without a shape or a specified stiffness, and for gaps, overlaps and slivers of outlines.
-    Failed meshes, insufficient memory or time, and stages with rigid-body motions are also errors. Problems of the cache cause warnings.
+    Before meshing, raises `DesignError` for links with neither a shape nor a specified stiffness, and for gaps, overlaps and slivers of
+    outlines. Failed meshes, insufficient memory or time, and stages with rigid-body motions are also errors. Problems of the cache cause
+    warnings.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> model(parallelogram(), memory=1e6, cache=None)

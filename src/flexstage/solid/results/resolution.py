@@ -23,13 +23,13 @@ change of a figure divided by the largest one of any component."""
 _AT_ORDER_TWO = 0.25
 """Order one is inaccurate: on hinges and blocks order two had a tenth of its error, never a quarter."""
 _LOCKED = 0.5
-"""Change from order one above which it does not estimate order two: elements of order one lock in bending of thin parts."""
+"""Largest change from order one to two that estimates the error of order two: elements of order one lock in bending of thin parts."""
 NOT_ESTIMATED = "the error of FEA is unknown: order two is compared with order one, which locks in bending of thin parts. Use --order 3"
 
 
 @dataclass(frozen=True)
 class Resolution(CheckedFields):
-    """Required relative error `accuracy` of stiffnesses, gains and frequencies. If `order` is specified, it is the fixed element order."""
+    """Required relative error `accuracy` of stiffnesses, gains and frequencies by FEA; `order` fixes the element order."""
 
     accuracy: float = 0.01
     order: int | None = None
@@ -42,9 +42,10 @@ DEFAULT = Resolution()
 class Converged(Generic[_Result]):
     """A result with the estimated relative error of each value. Errors are estimates, not bounds; unlisted errors are unknown.
 
-    The estimated error is the change from the previous order; at order two, it is a quarter of this change. At order two, errors of the
-    `unestimated` values, which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further,
-    although the required accuracy was not reached. `raised` is the number of components with elements one order higher.
+    The estimated error is the change from the previous order; at order two, it is a quarter of this change. The errors of the `unestimated`
+    values are unknown, because these values changed by more than half from order one to order two. `stopped` is the reason why the order
+    was not raised further, although the required accuracy was not reached. `raised` is the number of components with elements of one order
+    more.
     """
 
     result: Annotated[_Result, INNER]
@@ -67,11 +68,11 @@ def converge(
     sizes: Callable[[_Result], Mapping[str, float]] | None = None,
     measure: Callable[[Reduction], Mapping[str, float]] | None = None,
 ) -> Converged[_Result]:
-    """Raise the element order (3, 4) until the estimated errors are within the accuracy, or compute only at the fixed order in `asked`.
+    """Raise the element order (3, 4) until the estimated errors are within the accuracy; if `asked` fixes the order, use only this order.
 
-    Errors are estimated by a computation at the next lower order. `sizes` returns the number of unknowns of each component; if it is
-    specified, components that cause a large fraction of the change get a higher order first. `measure` computes only the values whose
-    errors are estimated (`figures`).
+    Errors are estimated by a computation at the next lower order. The function `sizes` returns the number of unknowns of each component.
+    With `sizes`, components that cause a large fraction of the change get a higher order first. The function `measure` computes only the
+    values with estimated errors (`figures`).
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)
@@ -159,7 +160,7 @@ def orders_of(asked: Resolution) -> tuple[int, ...]:
 
 
 def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
-    """Return the two reductions that are always needed: at the lowest order to compute, and at the next lower order for the error estimate.
+    """Return the two reductions that are always needed: at the lowest order of the study, and one order below it for the error estimate.
 
     >>> [way.fineness.order for way in first_reductions(Resolution())]
     [2, 3]
@@ -178,7 +179,7 @@ def reduction_of_order(order: int) -> Reduction:
 
 
 def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
-    """Estimate the relative errors of the values `after`, computed at this `order`, from the values `before` of the next lower order.
+    """Estimate the relative errors of the values `after`, computed at this `order`, from the values `before`, computed one order lower.
 
     At order two, a value that differs from order one by more than half has no estimate.
 

@@ -46,8 +46,8 @@ class BodyCost:
 class SolidStage(InNotebook):
     """Results of a stage by the solid model.
 
-    `statics` and `modes` are defined as for any model. `stress` is the highest stress of every link and body over all corners of the range
-    of strokes, which are measured from zero voltage, with permanent load. `stress` is `None` without strokes or with too many corners.
+    `statics` and `modes` are defined as for any model. `stress` is the highest stress of every link and body with permanent load, over all
+    corners of the stroke ranges. Strokes are measured from zero voltage. `stress` is `None` if there are no strokes or too many corners.
     `worst` (N,) are the model's coordinates at the corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy
     fraction of the elastic bodies in each mode.
     """
@@ -61,12 +61,12 @@ class SolidStage(InNotebook):
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Values with an estimated error, by name, in SI units: stiffness and platform frequencies."""
+        """Values for which errors are estimated, by name, in SI units: stiffness and platform frequencies."""
         return _figures(self.statics, self.modes)
 
     @property
     def flexible(self) -> Array:
-        """Relative change (k,) of each frequency due to elastic bodies, to first order: sqrt(1 - strain-energy fraction) - 1."""
+        """First-order relative change (k,) of each frequency due to the elasticity of bodies: sqrt(1 - strain-energy fraction) - 1."""
         return np.sqrt(1.0 - self.blocks) - 1.0
 
     @property
@@ -97,7 +97,7 @@ class SolidStage(InNotebook):
 
     @property
     def provenance(self) -> Annotated[str, VIEW]:
-        """Digest of the stage, and resolution of the model."""
+        """Origin of the results: digest of the stage, and resolution of the model."""
         return self.read.model.provenance
 
 
@@ -134,7 +134,7 @@ def stiffness_figures(found: Statics) -> dict[str, float]:
 def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:
     """Model a whole stage as a solid, and compute its stiffness, modes and stress.
 
-    Raises `DesignError` for links without a shape or a specified stiffness, for outlines that do not touch, and if the stage has a
+    Raises `DesignError` for links with neither a shape nor a specified stiffness, for outlines that do not touch, and if the stage has a
     rigid-body motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram

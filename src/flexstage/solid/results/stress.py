@@ -20,16 +20,16 @@ from flexstage.solid.results.read import SolidRead
 
 SHARP_CORNERS = "At sharp inner corners the true stress is infinite: the computed stress grows with the resolution."
 SILENT = 1e3
-"""Limit [Pa] below which stress counts as zero."""
+"""Stress [Pa] below which the stress counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinkStress(InNotebook):
     """Highest von Mises stress (L,) [Pa] on the surface of links and bodies, except stacks, over some load cases.
 
-    `case` (L,) is the number of the load case with this stress. `yield_stress` (L,) [Pa] is the yield stress, or the fatigue limit or
-    allowable stress if lower (NaN: unknown); for a body, the lowest of its solids. At sharp inner corners the true stress is infinite, and
-    the computed stress grows with the resolution.
+    `case` (L,) is the number of the load case with the highest stress. `yield_stress` (L,) [Pa] is the lowest of yield stress, fatigue
+    limit and allowable stress (NaN: unknown); for a body, it is the lowest value of its solids. At sharp inner corners the true stress is
+    infinite, and the computed stress grows with the resolution.
     """
 
     names: tuple[str, ...]

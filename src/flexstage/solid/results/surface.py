@@ -1,4 +1,4 @@
-"""Displaced surfaces of a stage modelled as solids, with values at the points, for pictures."""
+"""Displaced surfaces of a stage modelled as solids, with a value at each point, for pictures."""
 
 from __future__ import annotations
 

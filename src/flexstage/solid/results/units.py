@@ -34,10 +34,11 @@ _STEPS = 5
 
 @dataclass(frozen=True, eq=False)
 class SolidUnit(UnitOutput, InNotebook):
-    """Results of one isolated unit by the linear solid model without load; the unit's output is guided along `direction`.
+    """Results of one isolated unit without load by the linear solid model; the unit's output is guided along `direction`.
 
-    `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the highest stress of every link at the full
-    stroke. For pictures, `motion` (N,) are the coordinates of the unit's model `read` at the full stroke.
+    `strokes` (k,) [m] are steps up to the full stroke, and `outputs` (k,) [m] are the output displacements at these strokes. `stress` is
+    the highest stress of every link at the full stroke. For pictures, `motion` (N,) are the coordinates of the unit's model `read` at the
+    full stroke.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -46,7 +47,7 @@ class SolidUnit(UnitOutput, InNotebook):
         head="unit",
         notes=(
             "Each unit is isolated; its output is a rigid face.",
-            "Axial (K_a) and lateral (K_l) stiffness: with actuators fixed, and all other motions of the output prevented.",
+            "Axial (K_a) and lateral (K_l) stiffness: with fixed actuators, and with all other motions of the output prevented.",
             f"Gain and stress: at full stroke without load, with the output guided along its direction. {SHARP_CORNERS}",
         ),
     )
@@ -83,7 +84,7 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def outputs(self) -> Annotated[Array, LENGTH, Heading("output", unit="um")]:
-        """Outputs (k,) [m] for the strokes."""
+        """Output displacements (k,) [m] for the strokes."""
         return self.gain * self.strokes
 
     @property
@@ -95,10 +96,11 @@ class SolidUnit(UnitOutput, InNotebook):
 
 @check_arguments
 def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
-    """Model every unit with exactly one actuator at its output as an isolated solid. Return the results by name of the unit.
+    """Compute solid models of all units that have one actuator at their output, isolated from the stage. Return the results by unit name.
 
-    The first instance of the unit is used. Outlines of other bodies are left out. The output is the end face of the link to the platform;
-    this face remains plane. Raises `DesignError` if the stage has no unit with one actuator.
+    The first instance of a unit that has exactly one actuator at its output is used. Outlines of bodies outside the unit are left out. The
+    output is the end face of the link to the platform; this face remains plane. Raises `DesignError` if the stage has no unit with one
+    actuator.
 
     >>> from flexstage.cases.registry import case
     >>> solid_units(case("bridge"))

@@ -1,4 +1,4 @@
-"""Verification: comparison of theory and finite elements for hinges, units and the whole stage, with errors of both and verdicts."""
+"""Verification: comparison of theory with finite elements for hinges, units and the whole stage, with the errors of both, and verdicts."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _GRADES = {
     TheoryCheck.FEA: Mark.FAIL,
 }
 _TIMES = 1.5
-"""Smallest ratio for differences printed as factors."""
+"""Smallest ratio of theory and FEA for which differences are printed as factors."""
 _WORDS = {
     "Hz": ("high", "low"),
     "N/m": ("stiff", "soft"),
@@ -59,7 +59,7 @@ _WORDS = {
     "m/N": ("soft", "stiff"),
     "rad/(N m)": ("soft", "stiff"),
 }
-"""Adjectives of theory for a figure that is too large, and one that is too small, by unit."""
+"""Adjectives for theory by unit of the figure, if the figure of theory is too large and if it is too small."""
 _SHOWN = UnitIn("shown_unit")
 
 
@@ -69,7 +69,7 @@ class Row:
 
     `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the axial-spring model of Shin &
     Moon, if this model applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is
-    the estimated relative error of FEA. `calibration` names the parts whose data in the theory are from FEA. `modal_assurance` is the modal
+    the estimated relative error of FEA. `calibration` names the parts for which theory uses data from FEA. `modal_assurance` is the modal
     assurance criterion (MAC) of paired modes. Unknown values are `None`, and `reason` explains them. If `calibration` is empty, a verdict
     requires `theory` and `fea_error`.
     """
@@ -152,7 +152,7 @@ class Verification(InNotebook):
 
     @property
     def headline(self) -> str:
-        """Summary of the stage (last group): largest differences between theory and finite elements, number of agreeing quantities."""
+        """Summary of the last group (the stage): largest differences between theory and finite elements, number of agreeing quantities."""
         name, rows = list(self.groups.items())[-1]
         good = sum(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows)
         words = departures(rows)
@@ -191,9 +191,10 @@ def verify(
 ) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
-    Theory uses the design as it is, including calibrated hinges; FEA uses the drawn shapes. Hinges are computed first, then the stage, then
-    units. After each of these groups, the function `tell` is called with the group's rows. If neither `reduce` nor `compute` is specified,
-    all jobs run in one queue. Raises `DesignError` if the stage cannot be modelled as a solid.
+    Theory uses the design as it is, including calibrated hinges; FEA uses the drawn shapes of all hinges. Hinges are computed first, then
+    the stage, then units. After each of these three groups, the function `tell` is called with the results of the group, one `Row` per
+    quantity. `reduce` and `compute` are the functions that compute solids and hinges by FEA. If neither of these functions is specified,
+    all FEA jobs run in one queue. Raises `DesignError` if the stage cannot be modelled as a solid.
     """
     if reduce is STANDARD_SOLIDS and compute is STANDARD_HINGES:
         with Pool() as pool:
@@ -237,7 +238,7 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
 
 @check_arguments
 def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Estimate:
-    """Compute by finite elements the quantities that a stage's requirements limit, with estimated errors. Unknown values are left out.
+    """Compute by FEA the quantities that are limited by a stage's requirements, with estimated errors. Unknown values are left out.
 
     Strokes, stresses and frequencies are computed from the reduced solid model in the same way as from the lumped model. Stress at fillets
     includes the stress concentration factors of hinges.
@@ -254,8 +255,8 @@ def units_solid(
 ) -> Converged[dict[str, SolidUnit]]:
     """Compute every distinct isolated unit as a solid, to the accuracy required by `asked`.
 
-    Keys of the errors have the form `unit: figure`. Components are reduced with modes, so that the same components of the stage need no
-    further computation. With `bare`, components are reduced without modes, which does not change static results.
+    Keys of the errors have the form `unit: figure`. Components are reduced with modes, so that equal components of the stage need no
+    further computation. With `bare`, components are reduced without modes; this does not change static results.
     """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
@@ -273,7 +274,7 @@ def units_solid(
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
-    """Yield the rows of hinges: each separable direct compliance, by beam theory (or from the design file) and by FEA.
+    """Yield the rows of hinges: each separable direct compliance by FEA, and by beam theory or from the design file.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(hinge_rows(double_triangle(), {}))
@@ -298,7 +299,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
     """Compute isolated units by theory, with hinge compliances from FEA. Each hinge has the ends that it has in the isolated unit.
 
-    If the output of the isolated unit has no outlines, the end of the hinge at the output is rigid.
+    If the output body of the isolated unit has no outlines, the hinge at the output has a rigid end there.
     """
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
@@ -308,7 +309,7 @@ def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDAR
 
 
 def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Converged[dict[str, SolidUnit]]) -> Iterator[Row]:
-    """Yield the rows of isolated units: axial and lateral stiffness, gain and lost motion; `better` are the units with calibrated hinges.
+    """Yield the rows of isolated units: axial and lateral stiffness, gain and lost motion; `better` has the units with calibrated hinges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(unit_rows(double_triangle(), {}, Converged({}, {}, 3)))
@@ -451,7 +452,7 @@ def _reasons(rows: Iterable[Row]) -> str:
 
 
 def departures(rows: Iterable[Row]) -> str:
-    """Describe the differences between theory and finite elements: the worst quantity of every kind, and its cause.
+    """Describe the differences between theory and finite elements: the worst quantity of every kind, and the cause if it is known.
 
     >>> row = Row("stage", "in-plane stiffness (softest), others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
     >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])
@@ -485,7 +486,7 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     off = f"up to {_percent(_size_of_difference(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
-        return f"Not independent: the theory contains compliance matrices of {names} from FEA. It is {off}, but not due to these hinges."
+        return f"Not independent: the theory contains compliance matrices of {names} from FEA. It is {off}; these hinges are not the cause."
     name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
     if all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows):
         return f"{name} is {off}, with an FEA error up to {_percent(least)}: trust the theory."

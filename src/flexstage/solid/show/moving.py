@@ -1,4 +1,4 @@
-"""GLB file of a stage of rigid bodies and bending links, with its modes as animations, by theory without finite elements."""
+"""GLB file of a stage with rigid bodies and bending links; animations show its modes by theory, without finite elements."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _RIGID = (Kind.PLATFORM, Kind.BODY, Kind.GROUND)
 
 @check_arguments
 def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
-    """Return the content of a GLB file (glTF 2.0) of a stage: nodes for bodies, links and gauges, animations of the `modes` lowest modes.
+    """Return a GLB file (glTF 2.0) of a stage as bytes, with nodes for bodies, links and gauges.
 
-    Bodies move rigidly and links bend between them, as in the lumped model and in `flexstage.view`. For modes of elastic solids use
-    `flexstage cad --gltf`. The largest displacement of an animation is 5 % of the stage's diagonal. Raises `DesignError` if the package
-    pygltflib is missing or the stage cannot be drawn.
+    The file also contains animations of the `modes` lowest modes. Bodies move rigidly and links bend between them, as in the lumped model
+    and in `flexstage.view`. For modes of elastic solids use `flexstage cad --gltf`. The largest displacement of an animation is 5 % of the
+    stage's diagonal. Raises `DesignError` if the package pygltflib is missing or the stage cannot be drawn.
 
     >>> import flexstage as fs
     >>> fs.solid.to_glb(fs.case("parallelogram"), modes=1)[:4]

@@ -26,7 +26,7 @@ def solid_report(
     """Return sections of the solid model as an HTML page: headline, stage, first section, warnings, other sections.
 
     `warnings` about the result precede the warnings about the description. Sections that are `None` are left out. `more` contains motions
-    that the viewer shows in addition to those of theory.
+    that the viewer shows in addition to the motions by theory.
 
     >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
     '<!doctype html>'

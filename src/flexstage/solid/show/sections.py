@@ -1,4 +1,4 @@
-"""Sections of the solid model: hinges, units and stage by finite elements, compared with theory, and pictures of deformed solids."""
+"""Report sections of the solid model: hinges, units and stage by finite elements, comparison with theory, pictures of deformed solids."""
 
 from __future__ import annotations
 
@@ -111,30 +111,30 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
 def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
     for index in stage.modes.platform:
         figure = skin_figure(mode_surfaces(stage.read, stage.modes.shapes[:, index]), "")
-        caption = f"{stage.modes.names[index]}, {stage.modes.frequencies[index]:.1f} Hz: displacement relative to the largest."
+        caption = f"{stage.modes.names[index]}, {stage.modes.frequencies[index]:.1f} Hz: displacement divided by the largest."
         yield Picture(to_svg(figure, f"solid{index}", caption), caption)
 
 
 def _stress_picture(stage: SolidStage) -> Picture:
     assert stage.worst is not None  # noqa: S101  every stress has a worst corner
     surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
-    caption = "Von Mises stress at the strokes that are worst for the weakest link, with permanent load; displacements are magnified."
+    caption = "Von Mises stress with permanent load, at the strokes with the highest stress of the weakest link; magnified displacements."
     return Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), "stress", caption), caption)
 
 
 def verification_headline(found: Verification) -> Headline:
-    """Make the headline of a verification; `good` is true if theory suffices for all quantities of the stage (the last group)."""
+    """Make the headline of a verification; it is `good` if theory suffices for all quantities of the last group (the stage)."""
     rows = list(found.groups.values())[-1]
     return Headline(found.headline, all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """Convert the platform's finite-element modes to motions of a viewer; remarks describe the paired modes in `theory`."""
+    """Convert the platform modes by FEA to motions for a viewer; remarks describe the paired modes by theory (`theory`)."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 
 def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """Convert the platform modes of any finite-element model to motions of a viewer with the bodies `bones` (see `solid_motions`)."""
+    """Convert the platform modes of any finite-element model to motions for a viewer with the bodies `bones` (see `solid_motions`)."""
     found: list[Motion] = []
     for index in moving.modes.platform:
         twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
@@ -147,17 +147,17 @@ def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = Ma
 
 
 def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping[int, Pair], Section | None]:
-    """Pair modes of theory with modes by finite elements; returns the pairs by index, and a section that shows both side by side."""
+    """Pair modes by theory with modes by finite elements; return the pairs by index, and a section that shows paired modes side by side."""
     model = lumped(mechanism)
     pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
     alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
     partners = [(f"mode {pair.index + 1}", f"mode fea {index + 1}") for index, pair in alike.items()]
-    text = "A chosen mode plays next to its counterpart: theory left, finite elements right. Bodies move rigidly; signs are arbitrary."
+    text = "The selected mode is shown next to its paired mode: theory left, finite elements right. Bodies are rigid; signs are arbitrary."
     joined = joined_viewers(partners)
     return pairs, None if joined is None else section("Modes side by side", [joined, Prose(text)])
 
 
 def verification_section(found: Verification) -> Section | None:
-    """Make the section that compares theory with finite elements, starting with the verdicts as text."""
+    """Make the section that compares theory with finite elements and begins with the verdicts as text."""
     tables = [verification_table(rows) for rows in found.groups.values()]
     return section("Theory and finite elements", [verdict_table_of(found), *tables])

@@ -1,4 +1,4 @@
-"""Pictures of solids: deformed surfaces with colours for a value."""
+"""Pictures of solids: deformed surfaces, with colours that show a value."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LIGHT = np.array([0.1, 0.4, 0.91])
 
 
 def skin_figure(surfaces: Sequence[Surface], label: str, *, exponent: float = 1.0, side: Side = Side.ISOMETRIC) -> Any:
-    """Draw surfaces from one side as a matplotlib Figure. Colours show values from zero to the largest; `label` is their unit.
+    """Draw surfaces from one side as a matplotlib Figure. Colours show values from zero to the largest; `label` is the unit.
 
     Colours follow the value to the power of `exponent`: with an exponent below one, small values are easier to distinguish.
 

@@ -27,7 +27,7 @@ _LISTED = 12
 
 
 def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
-    """Tabulate every distinct hinge: supports of its ends (block or rigid), direct compliances about the centre, and estimated error.
+    """Tabulate every distinct hinge: support of each end (block or rigid), direct compliances about the centre, and estimated error.
 
     >>> hinge_table({}).texts()[0][:4]
     ['part', 'links', 'ends on', 'x [um/N]']
@@ -48,9 +48,9 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
     ]
     heads = [*(Column(axis, form.unit) for axis, form in zip(_AXES, forms, strict=True)), Column("error")]
     note = (
-        "Compliance about the centre of the hinge between the ends of its arcs, in its link frame. Error: largest estimate of any entry. "
+        "Compliance of the hinge between the ends of its arcs, about its centre, in its link frame. Error: largest estimate for any entry. "
         "The compliance of roots at blocks is included; the ground and bodies without outlines are rigid. "
-        f"{NO_VALUE}: cannot be separated from the adjacent blocks."
+        f"{NO_VALUE}: compliance that cannot be separated from the adjacent blocks."
     )
     notes = [note, *([f"Error {NO_VALUE}: {NO_ESTIMATE}."] if any(hinge.error is None for hinge in found.values()) else [])]
     return make_table("Compliance of hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
@@ -74,7 +74,7 @@ def _largest_error(name: str, found: Converged[dict[str, SolidUnit]]) -> float |
 
 
 def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table | None:
-    """Tabulate the isolated units: K_a, K_l, gain, loss, and the highest stress at the full stroke.
+    """Tabulate the isolated units: axial stiffness K_a, lateral stiffness K_l, gain, lost motion, and highest stress at the full stroke.
 
     >>> from flexstage.solid.results.resolution import Converged
     >>> solid_unit_table(Converged({}, {}, 3)) is None
@@ -96,7 +96,7 @@ def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -
         return None
     notes = [f"Von Mises stress on the surface; stacks are left out. {SHARP_CORNERS}"]
     if len(stress.names) > listed:
-        notes.append(f"Not listed: {len(stress.names) - listed} more, with lower stress.")
+        notes.append(f"Not listed: {len(stress.names) - listed} more links or bodies with lower stress.")
     return row_table(title, stress.largest(listed), "highest", "yield_stress", "safety", head="link or body", notes=notes)
 
 
@@ -153,5 +153,5 @@ def calibration_table(found: Calibration) -> Table:
         for name, values in found.over_beam_theory.items()
     ]
     heads = ["part", "links", *(Column(axis) for axis in _AXES), Column("FEA error")]
-    note = "Positive: FEA is softer. - %: from beam theory, because FEA cannot separate it from the adjacent blocks."
+    note = "Positive: FEA is softer. - %: value of beam theory, because FEA cannot separate the hinge from the adjacent blocks."
     return make_table("Difference in compliance between FEA and beam theory", heads, rows, notes=[note])

@@ -31,8 +31,8 @@ def optimise(
 ) -> CommandResult:
     """Find the best design within ranges and limits.
 
-    The search uses exact derivatives and several starts. Prints active constraints with their multipliers, and the design with rounded
-    values. With two objectives, computes a Pareto front.
+    The search uses exact derivatives and several initial designs. Prints the binding limits with their sensitivities, and the design with
+    rounded values. For two objectives, computes a Pareto front.
 
     If limits contradict each other, the exit code is 2. An interrupted search ends with the best design found.
     """

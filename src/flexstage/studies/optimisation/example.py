@@ -17,7 +17,7 @@ optimise = { maximise = "f1", starts = 2 }
 
 
 def leaf_study() -> tuple[Study, OptimisationProblem]:
-    """Return a study of the parallelogram: the leaf thickness with the highest frequency, for the required stroke.
+    """Return a study and its optimisation problem: find the leaf thickness of the parallelogram with the highest frequency.
 
     >>> leaf_study()[1].objectives[0].name
     'f1'

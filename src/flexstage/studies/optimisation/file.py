@@ -14,7 +14,7 @@ _MOST = 2
 
 @check_arguments
 def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
-    """Read the optimisation problem from the text of the study's file. Raises `DesignError` with all errors of the file `where`.
+    """Read the optimisation problem from the text of the study's file. Raises one `DesignError` with all errors; `where` names the file.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> load_optimisation(leaf_study()[0]).starts
@@ -44,6 +44,6 @@ def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> 
         example = next(iter(study.responses), "f1")
         findings.append(Finding("optimise", "objective missing", f'Use e.g. maximise = "{example}" in [optimise]'))
     if len(found) > _MOST:
-        what = f"must be at most {_MOST} objectives (got {len(found)})"
-        findings.append(Finding("optimise", what, "Keep two of them, and set [limits] on the others"))
+        what = f"too many objectives (got {len(found)}, expected at most {_MOST})"
+        findings.append(Finding("optimise", what, "Keep two of them, and set [limits] on the other responses"))
     return tuple(found)

@@ -44,7 +44,7 @@ class OptimisationProblem:
 
 
 def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
-    """List all limits: those of the study, and the design's requirements on measures without a study limit of the same sense.
+    """List the study's limits, and each design requirement unless a study limit has the same measure, point and sense.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]

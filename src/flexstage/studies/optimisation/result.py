@@ -23,15 +23,16 @@ from flexstage.studies.sweeps.variable import Variable
 class Binding:
     """A binding limit, or a binding end of a variable's range.
 
-    `price` is the change of the objective per unit of the limit or range end, in SI units, with all variables re-optimised.
+    `price` is the change of the objective per unit of the limit or of the end of the range, in SI units. All variables are re-optimised for
+    this change.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Binding limits",
         "name limit gain price",
         notes=(
-            "Gain: improvement of the objective if the limit or range end is relaxed by 1 % of its value.",
-            "Price: change of the objective per unit of the limit or range end.",
+            "Gain: improvement of the objective if the limit, or the end of a range, is relaxed by 1 % of its value.",
+            "Price: change of the objective per unit of the limit, or of the end of a range.",
         ),
     )
 
@@ -63,10 +64,11 @@ class Accepted:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Search from one start: first and last design (0 to 1 in each range), final objective `value` [SI] and largest relative `violation`.
+    """A search from one start. Its first and last design are given by fractions of the variables' ranges, 0 to 1.
 
-    `history` (k, 2) contains the objective and the largest violation of each accepted design. `agrees`: the final design is feasible, and
-    its objective differs from the best one by at most 0.01 % of the best or nominal objective, whichever is larger.
+    `value` is the objective [SI] of the last design, `violation` is its largest relative violation of a limit. `history` (k, 2) contains
+    the objective and the largest violation of each accepted design. `agrees` is true if the last design is feasible, and if its objective
+    differs from the best objective by at most 0.01 % of the best or nominal objective, whichever is larger.
     """
 
     TABLE: ClassVar[Layout] = Layout("Starts", "value violation evaluated end agrees", head="start")
@@ -97,7 +99,8 @@ class Start:
 class Rounded:
     """The best design with values (d,) at multiples of the variables' steps, and the `loss` of the objective [SI] by rounding (0 or more).
 
-    `tried` is the number of evaluated neighbours. If no neighbour is feasible, `point` is `None`, and `reason` explains why.
+    `tried` is the number of evaluated designs with rounded values near the optimum. If none of them is feasible, `point` is `None`, and
+    `reason` explains why.
     """
 
     point: Point | None
@@ -121,7 +124,7 @@ class LimitAt:
 
 @dataclass(frozen=True)
 class DesignPoint:
-    """A design: variables and objectives by name in SI units, and its limits. A relative variable is a factor on a design value."""
+    """A design: variables and objectives by name in SI units, and its limits. A relative variable is a factor on the nominal value."""
 
     variables: Mapping[str, float]
     objectives: Mapping[str, float]
@@ -130,7 +133,10 @@ class DesignPoint:
 
 @dataclass(frozen=True)
 class RoundedPoint(DesignPoint):
-    """The best design with rounded variables; `loss` [SI] is the objective's loss by rounding, `tried` the number of tried neighbours."""
+    """The best design with rounded variables.
+
+    `loss` is the objective's loss [SI] by rounding. `tried` is the number of evaluated designs with rounded variables near the optimum.
+    """
 
     loss: float
     tried: int
@@ -141,8 +147,8 @@ class Contradiction:
     """Minimal set of limits that contradict each other within the ranges.
 
     `violation` is the minimum, over all designs, of the largest relative violation of these limits. `point` is the design at this minimum;
-    it violates each limit in `limits` by at most `violation`. `overall` is this minimum for all limits together (without those of earlier
-    contradictions).
+    it violates each limit in `limits` by at most `violation`. `overall` is the same minimum for all limits together, except the limits of
+    earlier contradictions.
     """
 
     limits: tuple[Requirement, ...]
@@ -195,7 +201,7 @@ class Outcome(InNotebook):
         return self.design(self.before)
 
     def design(self, point: Point) -> DesignPoint:
-        """Return a design with the names of its variables and objectives, in SI."""
+        """Return the design at `point`, with its variables and objectives by name, in SI units."""
         first = len(self.definition.objectives)
         return DesignPoint(
             dict(zip((each.name for each in self.study.variables), values_of(self.study, point.shares).tolist(), strict=True)),
@@ -213,7 +219,8 @@ def _limit_at(limit: Requirement, value: float) -> LimitAt:
 class Optimum(Outcome):
     """The outcome of an optimisation with one objective.
 
-    `point` is the best design, or `None` if no start found a feasible design. `binding` are the active limits and range ends.
+    `point` is the best design, or `None` if no start found a feasible design. `binding` contains the binding limits and the binding ends of
+    the variables' ranges.
     """
 
     point: Annotated[Point | None, INNER]
@@ -228,7 +235,7 @@ class Optimum(Outcome):
 
     @property
     def on_steps(self) -> Annotated[RoundedPoint | None, VIEW, Called("rounded")]:
-        """The best design whose variables are multiples of their steps. Null if no variable has a step, or if no neighbour is feasible."""
+        """The best design whose variables are multiples of their steps. Null if no variable has a step, or no such design is feasible."""
         if self.rounded is None or self.rounded.point is None:
             return None
         found = self.design(self.rounded.point)
@@ -236,7 +243,7 @@ class Optimum(Outcome):
 
     @property
     def final(self) -> Point | None:
-        """The final design: the rounded one if steps exist and a neighbour is feasible, else the optimum."""
+        """The final design: the feasible design with rounded variables, if it exists; otherwise the optimum."""
         return self.point if self.rounded is None or self.rounded.point is None else self.rounded.point
 
     @property
@@ -249,7 +256,7 @@ class Optimum(Outcome):
 
     @property
     def agreeing(self) -> Annotated[int, VIEW]:
-        """Number of starts with a final design as good as the best."""
+        """Number of starts that found the best objective (`agrees` of `Start`)."""
         return sum(start.agrees for start in self.starts)
 
     def value(self, point: Point) -> float:

@@ -22,9 +22,10 @@ _EDGE = 1e-9
 def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
     """Near `point`, find the best feasible design with variables at multiples of their steps. Returns `None` if no variable has a step.
 
-    Neighbours are ranked by the linear model of objective and limits; for more than 12 variables, only the nearest ones are considered. The
-    neighbours are evaluated in batches, best rank first, until one is feasible. Then single steps of every variable are tried as long as
-    they improve the design. Variables without a step are constant.
+    In a neighbour of `point`, each variable with a step has the multiple of its step below or above its value. Of more than 12 such
+    variables, the further ones have the nearest multiple only. Neighbours are ranked by the linear model of objective and limits. They are
+    evaluated in batches, best rank first, until one is feasible. Then single steps of every variable are tried as long as they improve the
+    design. Variables without a step are constant.
     """
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:
@@ -37,7 +38,7 @@ def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded 
         if best is not None:
             break
     if best is None:
-        reason = f"none of the {tried} nearest designs on the steps of the variables is feasible; use finer steps, or wider limits"
+        reason = f"none of the {tried} nearest designs at multiples of the steps is feasible; use finer steps, or wider limits"
         return Rounded(None, None, np.nan, tried, reason)
     for _ in range(_ROUNDS):
         around = np.array(list(_single_steps(setting, best, stepped)))

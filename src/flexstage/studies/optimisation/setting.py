@@ -26,7 +26,7 @@ _EDGE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """Input of a search. `values` evaluates the objectives, then the measures of the `kept` limits. `before` is the nominal design."""
+    """Input of a search. `values` evaluates the objectives, then the measures of the limits `kept`. `before` is the nominal design."""
 
     study: Study
     definition: OptimisationProblem
@@ -133,5 +133,5 @@ def _range_findings(study: Study) -> Iterator[Finding]:
         if not each.relative:
             found = _stated_values(study, each)
             if max(found) - min(found) > _EDGE * max(map(abs, found)):
-                what = f"the numbers at its addresses differ (got {min(found):.6g} to {max(found):.6g}{unit})"
+                what = f"the design's numbers at the variable's addresses differ (got {min(found):.6g} to {max(found):.6g}{unit})"
                 yield Finding(where, what, "Use a range in percent, or two variables")

@@ -46,7 +46,7 @@ def design_text(study: Study, folder: Path) -> str:
 def write_optimum(text: str, study: Study, definition: OptimisationProblem, values: Array | Sequence[float], *, where: str = "text") -> str:
     """Write `values` (d,) of the study's variables into the text of a design file, with the tag `derived optimise STUDY, OBJECTIVE`.
 
-    Raises `DesignError` if the file's layout does not allow it.
+    Raises `DesignError` if the layout of the file does not allow the changes.
 
     >>> from flexstage.mechanism.store import dumps, loads
     >>> from flexstage.studies.optimisation.example import leaf_study

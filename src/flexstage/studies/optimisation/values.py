@@ -59,7 +59,7 @@ class NumberedFrequency:
 
     @property
     def slope(self) -> Array:
-        """The gradient (n,); for a repeated mode, the gradient of the mean frequency of its cluster."""
+        """The gradient (n,) of the frequency; for repeated modes, the gradient of the mean of their frequencies."""
         own = self.spectrum.frequencies
         near = np.abs(own - own[self.count - 1]) <= 1e-6 * own[self.count - 1]
         return np.mean(np.diagonal(self.spectrum.slopes, axis1=1, axis2=2)[:, near], axis=1)
@@ -88,8 +88,8 @@ class Values:
     """Evaluator of the `measures` of a study's designs.
 
     Derivatives are exact: analytical for eigenvalues, otherwise by a complex step through the formulas of the models. Only the derivatives
-    of `map_error` and `opening` are central differences, because corners and outlines are computed in real numbers. The step is a
-    thousandth of the range, for which the errors due to rounding and to curvature are similar.
+    of `map_error` and `opening` are central differences, because corners and outlines are computed in real numbers. Their step is a
+    thousandth of the range; for this step, the errors due to rounding and to curvature are similar.
     """
 
     study: Study
@@ -116,7 +116,7 @@ class Values:
         return tuple(Modes(count, platform) for platform, count in highest.items())
 
     def __call__(self, shares: Array) -> list[Point | str]:
-        """Compute points with derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
+        """Compute points with derivatives for designs at fractions (s, n) of the ranges. For a failed design, return the reason."""
         return self._evaluate(shares, slopes=True)
 
     def evaluate(self, shares: Array) -> list[Point | str]:
@@ -177,7 +177,9 @@ class Values:
 
 
 def values_of(study: Study, shares: Array) -> Array:
-    """Convert fractions of the ranges to values (d,) of the variables. Values closer to a step than 1e-6 of the range are rounded to it.
+    """Convert fractions of the ranges to values (d,) of the variables.
+
+    A value is rounded to a multiple of the variable's step if the change is at most 1e-6 of the range.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> values_of(leaf_study()[0], np.array([0.5000000001])).round(12).tolist()

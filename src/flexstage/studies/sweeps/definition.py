@@ -64,7 +64,7 @@ class Study:
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
-        """List the location in the file and the name of each column of the results: variables, responses, and measures for limits.
+        """List the location in the file and the name of each column of the results: variables, responses, and measures of limits.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().names
@@ -130,7 +130,7 @@ class Study:
 
     @property
     def numbers(self) -> Numbers | None:
-        """Numbers in which designs differ, as linear functions of the variables. None if designs are built directly from the variables.
+        """Numbers that differ between designs, as linear functions of the variables. None if designs are built directly from the variables.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().numbers  # what `drawn_from` makes of the variables will do
@@ -148,7 +148,7 @@ class Study:
         return measure_all(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
 
     def feasible(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
-        """Return the mask (n,) of designs that meet all limits, from all responses (n, r). A design without values does not meet a limit.
+        """Return the mask (n,) of designs that meet all limits, from all responses (n, r). A design without values violates every limit.
 
         `limits` replaces the limits of the study.
 

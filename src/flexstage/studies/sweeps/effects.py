@@ -36,9 +36,9 @@ class Effects(InNotebook):
     maximum of each response in SI. `means` (d, b, r) contains, for each variable, the mean response in each of b bins of its values;
     `places` (d, b) are the mean values of the variable in these bins. The bins have equal counts; for grids, each level is a bin. The
     effects of the other variables are subtracted from `means`. `first` (d, r) is the fraction of the variance due to a variable alone. For
-    Saltelli's plan, it is Sobol's index; for other plans, the correlation ratio of the bins. For random designs, this ratio is corrected
-    for the number of bins. `total` (d, r) includes all interactions of a variable; it is None for plans other than Saltelli's. `pairs` (d,
-    d, r) is the fraction due to two variables together, in addition to the fractions due to each alone; `strongest` are the strongest
+    Saltelli's plan, it is Sobol's first-order index; for other plans, it is the correlation ratio of the bins. For random designs, this
+    ratio is corrected for the number of bins. `total` (d, r) is the fraction due to a variable and all its interactions; it is None for
+    plans other than Saltelli's. `pairs` (d, d, r) is the fraction that two variables explain only together; `strongest` are the strongest
     interactions. `errors` (2, r) contains the largest standard error of first-order and total indices, and of second-order indices; it is
     NaN for plans other than Saltelli's. All fractions are NaN for a constant response.
     """
@@ -63,7 +63,7 @@ class Effects(InNotebook):
 
 @check_arguments
 def effects(results: Results, plan: Plan) -> Effects:
-    """Compute effects of a study's variables on its responses, from all designs computed so far that have values.
+    """Compute the effects of a study's variables on its responses, from the computed designs that have values of all responses.
 
     For a response y and a variable x_i, the first-order index is S_i = V[E(y | x_i)] / V(y), and the total index is T_i = E[V(y | x_~i)] /
     V(y). E is the expected value, V the variance, and x_~i are all variables but x_i (Sobol, Math. Comput. Simul. 55 (2001) 271; estimators

@@ -33,7 +33,8 @@ _MOST = 10**9
 def load_study(path: str | os.PathLike[str]) -> Study:
     """Read a study's file. The study's design file must be in the same folder.
 
-    Raises `DesignError` with every error: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
+    Raises one `DesignError` that lists all errors, for example unknown keys, variables and measures (with the nearest known names), empty
+    ranges, and wrong units.
 
     >>> load_study("nowhere/study.toml")
     Traceback (most recent call last):
@@ -83,7 +84,7 @@ class Opening:
 
 
 def read_opening(text: str, where: str, folder: Path | None) -> Opening:
-    """Read the common part of the file of any study. Raises `DesignError` without a valid design.
+    """Read the common part of the file of any study. Raises `DesignError` if it specifies no valid design.
 
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"' + chr(10) + 'responses.f = "frequency.1"'
     >>> list(read_opening(text, "here", None).responses)
@@ -146,7 +147,7 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
         findings += error.findings
         return None
     if is_share(table.low):
-        findings.append(Finding(f"{where}.step", "a relative range (%) has no step", "Use a range with a unit, or remove the step"))
+        findings.append(Finding(f"{where}.step", "a relative range (%) cannot have a step", "Use a range with a unit, or remove the step"))
     elif not step > 0.0:
         findings.append(Finding(f"{where}.step", f"must be greater than 0 (got {step:g})", 'Use e.g. step = "10 um"'))
     return step

@@ -1,4 +1,4 @@
-"""Interactions of two variables: the fraction of a response's variance that only both together explain, and its shape."""
+"""Interactions of two variables: the fraction of a response's variance that they explain only together, and the interaction's shape."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Interaction:
-    """Interaction of two variables: the mean response as a function of the first one, for low, middle and high values of the second one.
+    """Interaction of two variables: the mean response over the first variable, for low, middle and high values of the second variable.
 
     `over`, `by` and `response` are the indices of both variables and of the response. `share` is the fraction of the response's variance
-    that only both variables together explain. `places` (b,) are mean values of the first variable in b bins, `levels` (3,) those of the
-    second variable at its three levels, in SI. `means` (3, b) are the means of the response; they are NaN for combinations without a
-    design.
+    that only both variables together explain. `places` (b,) are the mean values [SI] of the first variable in b bins. `levels` (3,) are the
+    mean values [SI] of the second variable at its three levels. `means` (3, b) are the means of the response; they are NaN for combinations
+    without a design.
     """
 
     over: int
@@ -37,14 +37,14 @@ class Interaction:
 
 
 def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
-    """Compute the fractions (d, d, r) of the variance of responses (n, r) that each two variables of `at` (n, d) explain only together.
+    """Compute the fractions (d, d, r) of the variance of responses (n, r) that pairs of the variables `at` (n, d) explain only together.
 
     The method is analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and
     subtracted. The cells formed by the bins of two variables i and j then explain a sum of squares SS_ij of the residual. The fraction is
     SS_ij divided by the total sum of squares. Without a `grid`, the value of SS_ij expected without interaction is first subtracted. It is
     (b_i - 1)(b_j - 1) MSE, with the numbers of bins b_i and b_j and the mean square MSE of the rest of the residual. For a complete grid,
-    the fraction is exact. Without a grid, effects within bins are missing, and true fractions are larger. The result is NaN on the
-    diagonal, for too few designs, and for a constant response.
+    the fraction is exact. Without a grid, the computed fractions omit effects within bins, and are therefore too small. The result is NaN
+    on the diagonal, for too few designs, and for a constant response.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
@@ -128,10 +128,10 @@ def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
     """Compute second-order Sobol indices (d, d, r) and their largest standard error (r,) from blocks (2 d + 2, n, r) of Saltelli's plan.
 
     The second-order index of two variables x_i and x_j for a response y is S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j, with their
-    first-order indices S_i and S_j. It follows from products of the responses of two designs that have only x_i and x_j in common. These
-    designs are A with column j of B, and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean response
-    is subtracted first, and the results for (i, j) and (j, i) are averaged. Standard errors assume independent rows; the errors of a Sobol
-    sequence are smaller.
+    first-order indices S_i and S_j. It follows from products of the responses of two designs that have only x_i and x_j in common. With the
+    samples A and B of `Plan`, these designs are A with column j of B, and B with column i of A (Saltelli, Computer Physics Communications
+    145 (2002) 280). The mean response is subtracted first, and the results for (i, j) and (j, i) are averaged. Standard errors assume
+    independent rows; the errors of a Sobol sequence are smaller.
 
     >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response
     [nan]

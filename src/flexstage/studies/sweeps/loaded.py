@@ -1,4 +1,4 @@
-"""Stability of a study's designs under their permanent load, and its margin over the ranges."""
+"""Stability of a study's designs under their permanent load, and the smallest load factor over the ranges."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MARGIN = 2.0
 
 
 def needs_load_check(study: Study) -> bool:
-    """Return whether the stability of each design must be checked, because the load factor at a range end is close to its limit.
+    """Return whether the stability of each design must be checked, because the smallest load factor at the ends of the ranges is low.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> needs_load_check(neck_study())
@@ -49,7 +49,7 @@ def unstable_designs(study: Study, values: Array) -> dict[int, str]:
 
 
 def loaded_findings(study: Study) -> tuple[Finding, ...]:
-    """Report the smallest load factor at the range ends, if weight, payloads and forces are significant there.
+    """Report the smallest load factor at the ends of the variables' ranges, if weight, payloads and forces are significant.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> loaded_findings(neck_study())

@@ -1,4 +1,4 @@
-"""Numbers in which a study's designs differ, as linear functions of the variables."""
+"""Numbers that differ between a study's designs, as linear functions of the variables."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 
 
 class Sampling(Enum):
-    """Distribution of designs over the ranges."""
+    """Method that distributes designs over the variables' ranges."""
 
     GRID = "grid"
     LATIN_HYPERCUBE = "latin hypercube"

@@ -42,7 +42,7 @@ class PairShare:
 class ResponseEffects(RequestedMeasure):
     """A response, with its statistics over the designs that have values [SI], and the effects of variables on it.
 
-    `first_order` and `total_order` contain the fraction of the response's variance for each variable. Total fractions, and the largest
+    `first_order` and `total_order` contain the fraction of the response's variance due to each variable. Total fractions, and the largest
     standard errors of indices, exist only for Saltelli's plan. The standard error of second-order indices requires `pairs`.
     """
 
@@ -84,7 +84,7 @@ class StudyResult(InNotebook):
 
     @property
     def sampling(self) -> Annotated[Sampling, VIEW]:
-        """Distribution of designs over the ranges."""
+        """Method that distributes designs over the variables' ranges."""
         return self.study.plan.sampling
 
     @property

@@ -27,9 +27,10 @@ _STEP = 1e-20
 class Variable:
     """A variable of a study that sets the numbers at all `addresses` to a value from `low` to `high`, in the SI unit of `quantity`.
 
-    `relative`: low and high are factors on the design's value at each address. `logarithmic`: values are spaced by equal ratios. `levels`
-    is the number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment; rounded values are multiples
-    of it. With a `variant`, the addresses are parameters of that case; the design is rebuilt from the case's parameters.
+    If `relative` is true, `low` and `high` are factors on the design's value at each address. If `logarithmic` is true, values are spaced
+    by equal ratios. `levels` is the number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment;
+    rounded values are multiples of this increment. If `variant` is specified, `addresses` are parameters of this case, and the design is
+    rebuilt from the case's parameters.
     """
 
     name: str
@@ -156,7 +157,7 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
                 where, f"a logarithmic range must start above 0 (got {variable.low:g})", "Use a positive start, or a linear range"
             )
         if variable.levels is not None and variable.levels < 2:
-            yield Finding(where, f"must be at least 2 levels (got {variable.levels})", "Use 2 levels or more")
+            yield Finding(where, f"too few levels (got {variable.levels}, expected at least 2)", "Use 2 levels or more")
         for address in variable.addresses:
             full = canonical(mechanism, address) if variable.variant is None else f"parameter {address}"
             if full in owners:

@@ -1,4 +1,4 @@
-"""Stages for a specification: pairs of architecture and actuator are excluded by bounds or searched; answers, and reasons for failures."""
+"""Search of stages for a specification among pairs of architecture and actuator: answers, and reasons for failures."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from flexstage.studies.synthesis.specification import Specification
 from flexstage.studies.synthesis.synthesised import find_architectures
 
 Progress = Callable[[str, float], None]
-"""Called with the present computation and the completed fraction."""
+"""Function that is called with the name of the present computation and the completed fraction."""
 
 _ALONE = Run(workers=1)
 _RELAXED = 3
@@ -43,7 +43,7 @@ FIRST = 3
 class Answers(InNotebook):
     """The outcome of a specification: `answers` (best first), `failed` pairs, and `impossible` pairs, which a bound excludes.
 
-    `interrupted`: some pairs were not searched.
+    If `interrupted` is true, some pairs were not searched.
     """
 
     specification: Annotated[Specification, INNER]
@@ -54,7 +54,7 @@ class Answers(InNotebook):
 
     @property
     def best(self) -> Annotated[Answer | None, INNER]:
-        """The best answer, or None without answers."""
+        """The best answer, or None if there is no answer."""
         return self.answers[0] if self.answers else None
 
 
@@ -77,7 +77,7 @@ def design(  # noqa: PLR0913 (its options)
     requirements by `studies.optimise`. As long as a design misses a requirement with elastic bodies or at large displacements, limits are
     corrected and optimisation is repeated. For the first three answers, `verify` (such as `solid.required_values`) repeats the search with
     finite elements, `tolerance` computes the yield, and `close_loop` (such as `control.sensitivity_crossover`) computes the sensitivity
-    crossover of the control loop. If `architectures` is empty, all are used.
+    crossover of the control loop. If `architectures` is empty, all architectures are used.
 
     `finished` receives the result of each pair as soon as it is known, and again after each change.
 

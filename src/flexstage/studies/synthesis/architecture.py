@@ -76,7 +76,7 @@ class Architecture:
     limits: Mapping[str, str] = field(default_factory=dict)
     """Smallest values of measures, as formulas."""
     drawing: str = ""
-    """Text of its design file, if it is not a file of the folder."""
+    """Text of the design file, if the folder of architectures does not contain this file."""
 
     def is_for(self, motions: frozenset[str]) -> bool:
         """Return whether the architecture has exactly these motions.
@@ -126,7 +126,7 @@ class CatalogueActuator:
 
     @property
     def stiffness(self) -> float:
-        """Stiffness along the stroke [N/m]; for an amplified actuator, u'ku with its 6x6 stiffness k and free deformation u per stroke."""
+        """Stiffness along the stroke [N/m]; for an amplified actuator, u^T k u with 6x6 stiffness k and free deformation u per stroke."""
         if self.kind == "piezo":
             return float(self.part.stiffness)
         return float(self.part.free_deformation @ self.part.between @ self.part.free_deformation)
@@ -375,7 +375,7 @@ def study_text(architecture: Architecture, spec: Specification, actuator: Catalo
 def tolerance_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, limits: Mapping[str, str]) -> str:
     """Return the tolerance study of a design: lengths, and the thickness of every hinge, are uniformly distributed within the tolerance.
 
-    `limits` are requirements of the design. Requirements on named numbers, which are rules of the architecture, are left out.
+    `limits` are requirements of the design. Requirements on named numbers are left out, because they are rules of the architecture.
     """
     spread = f'uniform = "{_mm(spec.make.tolerance)}"'
     lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', ""]

@@ -25,7 +25,9 @@ _SMALL = 1e-9
 
 
 def reciprocal_space(vectors: Array) -> Array:
-    """Return an orthonormal basis (6, 6 - n) of the wrenches that do no work on n independent twists (6, n), or vice versa.
+    """Return an orthonormal basis (6, 6 - n) of the wrenches that do no work on n independent twists (6, n).
+
+    For n wrenches, the result is a basis of the twists on which they do no work.
 
     >>> reciprocal_space(np.eye(6)[:, :2]).shape
     (6, 4)
@@ -85,7 +87,7 @@ def has_parallel_guide(twists: Array) -> bool:
 
 
 def serial_guides(motions: frozenset[str]) -> list[tuple[frozenset[str], ...]]:
-    """Return all ways to obtain the motions with the fewest parallel guides in series; ways with more motions in the first guide precede.
+    """Return all ways to obtain the motions with the fewest parallel guides in series; ways with more motions in the first guide are first.
 
     >>> [[sorted(each) for each in way] for way in serial_guides(frozenset({"x", "y", "z", "rz"}))]
     [[['rz', 'x', 'y'], ['z']], [['z'], ['rz', 'x', 'y']]]

@@ -124,11 +124,11 @@ def _at_corners(bench: StageResults) -> _Corners:
 
 
 def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Mapping[str, float], ...]) -> dict[str, str]:
-    """Return limits for the lumped model so that better models also meet the requirements; empty if these models already do.
+    """Return limits for the lumped model so that better models also meet the requirements.
 
-    By space mapping, each limit is divided by the ratio of a better model's value to the lumped model's value, if the result is stricter.
-    With several better models, it is divided by the product of these ratios. Raises `DesignError` if the lumped value of a missed
-    requirement is zero.
+    The result is empty if the better models already meet the requirements. By space mapping, each limit is divided by the ratio of a better
+    model's value to the lumped model's value, if the result is stricter. With several better models, each limit is divided by the product
+    of these ratios. Raises `DesignError` if the lumped value of a missed requirement is zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drawn = required_values(parallelogram())
@@ -138,7 +138,7 @@ def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Ma
     lines = {line.key: line for line in requirements(stage) if line.key in drawn}
     for key, line in lines.items():
         if not drawn[key] and not all(Verdict(line, np.asarray(each.get(key, 0.0))).passed for each in better):
-            raise refuse(key, "zero in the lumped model with rigid bodies, so that a stricter limit has no effect", "Relax the requirement")
+            raise refuse(key, "is zero in the lumped model with rigid bodies, so a stricter limit has no effect", "Relax the requirement")
     ratios = {key: float(np.prod([each[key] / drawn[key] for each in better if key in each])) for key in lines if drawn[key]}
     if all(Verdict(lines[key], np.asarray(drawn[key] * ratio)).passed for key, ratio in ratios.items()):
         return {}

@@ -1,8 +1,8 @@
 """Guides from a ground structure: wires and leaves between the faces of a block and the ground, chosen by stiffness.
 
-Candidates are normal to five faces of the block, in a grid of three by three places on each face; the payload is on the sixth face. Lines
-along the axes are sufficient: if the pure forces reciprocal to motions along and about axes span their space, the forces along axes do so
-too. A candidate includes all its images under the symmetries of the specification (an orbit), so that a guide is as symmetric as its
+Candidate elements are normal to five faces of the block, in a grid of three by three places on each face; the payload is on the sixth face.
+Lines along the axes are sufficient: if the pure forces reciprocal to motions along and about axes span their space, the forces along axes
+do so too. A candidate includes all its images under the symmetries of the specification (an orbit), so that a guide is as symmetric as its
 specification.
 """
 
@@ -133,7 +133,7 @@ def places(rows: Sequence[int]) -> Iterator[Place]:
 
 
 def orbits(symmetries: Sequence[Array], rows: Sequence[int]) -> list[tuple[Element, ...]]:
-    """Return the candidates, each a tuple of elements with all their images under the symmetries.
+    """Return the candidates. Each candidate is a tuple of one element and all its images under the symmetries.
 
     >>> len(orbits(MIRRORS, (0,))), len(orbits((*MIRRORS, QUARTER_TURN), (0,)))
     (24, 13)
@@ -207,7 +207,7 @@ def _conditioning(forces: Array) -> float:
 
 
 def exchange(options: int, count: int, merit: Callable[[Sequence[int]], float]) -> tuple[int, ...]:
-    """Choose `count` of several options. Options are added one by one, then exchanged one by one as long as the merit increases.
+    """Choose `count` of several options. The options are added one by one, then exchanged one by one as long as the `merit` increases.
 
     >>> exchange(5, 2, lambda chosen: sum(chosen))
     (4, 3)

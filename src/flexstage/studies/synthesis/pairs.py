@@ -17,7 +17,7 @@ from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specificat
 class Shortfall:
     """A bound that excludes a pair: the requirement, the best possible value and the required value [SI], and the reason.
 
-    `universal`: the bound holds for every mechanism with these actuators; otherwise, it holds for this architecture only.
+    If `universal` is true, the bound holds for every mechanism with these actuators; otherwise, it holds for this architecture only.
     """
 
     requirement: str
@@ -48,7 +48,7 @@ class CandidatePair:
 
 @dataclass(frozen=True)
 class ImpossiblePair:
-    """A pair that bounds exclude. Its `shortfall` is the one with the smallest ratio; universal bounds take precedence."""
+    """A pair that bounds exclude. `shortfall` is the bound with the smallest `ratio`; universal bounds take precedence."""
 
     architecture: str
     actuator: str
@@ -117,7 +117,7 @@ def _force_shortfalls(spec: Specification, pair: CandidatePair, frequency: float
             continue  # the arm of the force is a matter of the box
         best = bounds.force_frequency_bound(source, value, spec.masses[axis])
         if best < frequency:
-            reason = f"{source.count} coils have a continuous force of only {source.force:.3g} N each, even with the best lever"
+            reason = f"the continuous force of {source.count} coils, {source.force:.3g} N each, is too small even with the best lever"
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
 
 

@@ -124,8 +124,8 @@ class Specification:
     `requirements` may contain `frequency` (first natural frequency), `unwanted` (first frequency of a motion that is not required), and any
     measure of a design file's requirements. By default, `safety` must be at least 2.
 
-    `together`: all displacements must be reached at once, in all combinations; otherwise, each must be reached alone. `starts` and `seed`
-    apply to the search of each pair.
+    If `together` is true, all displacements must be reached at once, in all combinations; otherwise, each displacement must be reached
+    alone. `starts` and `seed` apply to the search of each pair.
     """
 
     name: str
@@ -260,9 +260,9 @@ def specification_schema() -> dict[str, Any]:
 def _findings(spec: Specification) -> Iterator[Finding]:
     """Contradictions within a specification."""
     if not spec.displacements:
-        yield Finding("motion", "no displacement is required", 'Use e.g. motion = { x = "50 um" }')
+        yield Finding("motion", "required displacement missing", 'Use e.g. motion = { x = "50 um" }')
     if not any(key in FREQUENCY_KEYS or key.startswith("stiffness") for key in spec.requirements):
-        yield Finding("requirements", "no frequency or stiffness is required", 'Use e.g. frequency = "at least 100 Hz"')
+        yield Finding("requirements", "required frequency or stiffness missing", 'Use e.g. frequency = "at least 100 Hz"')
     yield from _requirement_findings(spec)
     yield from _size_findings(spec)
     if any(axis.startswith("r") for axis in spec.displacements) and np.linalg.eigvalsh(spec.inertia)[0] <= 0.0:
@@ -279,7 +279,7 @@ def _requirement_findings(spec: Specification) -> Iterator[Finding]:
             if key in (*FREQUENCY_KEYS, "safety"):
                 spec.least(key, RATIO if key == "safety" else FREQUENCY)
             elif key.startswith("stroke."):
-                yield Finding(where, "strokes must be specified in motion", f'Use e.g. motion.{key.removeprefix("stroke.")} = "50 um"')
+                yield Finding(where, "strokes belong in the section motion", f'Use e.g. motion.{key.removeprefix("stroke.")} = "50 um"')
             else:
                 requirement(frame, key, text, where)
         except DesignError as error:

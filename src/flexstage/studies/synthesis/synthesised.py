@@ -160,7 +160,7 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
         raise refuse("box.opening", f"the guide for the motions {_listed(motions)} has no opening", "Remove the opening")
     found = [each for each in served or synthesise(spec) if each.name in (names or (each.name,))]
     if not found:
-        what = f"no architecture{' of these' if names else ' with these actuators'} has exactly the motions {_listed(motions)}"
+        what = f"no architecture{' of those specified' if names else ' with these actuators'} has exactly the motions {_listed(motions)}"
         advice = 'Allow actuators of kind "piezo" or "voice_coil", or reduce make.thinnest'
         raise refuse("motion", what, "Use another --architecture" if names else advice)
     return found
@@ -186,7 +186,7 @@ def synthesise(spec: Specification) -> list[Architecture]:
 
 @dataclass(frozen=True)
 class Layer:
-    """One of the guides in series, with its actuators: number 1 carries the platform, number n the tray under guide n - 1."""
+    """One of the guides in series, with its actuators: number 1 carries the platform, and number n carries the tray under guide n - 1."""
 
     number: int
     guide: Guide
@@ -214,11 +214,11 @@ class Layer:
         return sorted({(_part(each), "xyz"[each.place.face]) for each in self.guide.elements})
 
     def named(self, text: str) -> str:
-        """Return a text with the guide's number appended to the names of its own numbers and parts."""
+        """Return a text in which the guide's number is appended to the names of the guide's own quantities and parts."""
         return text if self.number == 1 else re.sub(_OWN, rf"\1_{self.number}", text)
 
     def point(self, place: Place, outside: str = "") -> str:
-        """Return the formulas of a point on a face of the block, or at a distance `outside` of it."""
+        """Return the formulas of a point on a face of the block, or at a distance `outside` from the face."""
         texts = ["0 mm" if not each else f"{'-' if each < 0 else ''}pitch_{axis}" for each, axis in zip(place.grid, "xyz", strict=True)]
         sign = "-" if place.side < 0 else ""
         texts[place.face] = f"{sign}half_{'xyz'[place.face]}" + (f" {sign or '+'} {outside}" if outside else "")

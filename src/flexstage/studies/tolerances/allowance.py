@@ -25,7 +25,8 @@ class AllowedEntry:
     """Allowable factors on the deviations of one entry. The factors are infinite if these deviations have no effect.
 
     The factor `alone` is valid if the other entries are unchanged; the requirement `decided_by` limits this factor. For `equal_shares`, all
-    entries change, and each uses the same fraction of the margin. Both are NaN (unknown) if the interval of an entry is asymmetric.
+    entries change, and each uses the same fraction of the margin. `alone` and `equal_shares` are NaN (unknown) if any entry has an
+    asymmetric interval.
     """
 
     name: str
@@ -38,13 +39,13 @@ class AllowedEntry:
 class Allowance:
     """Factors on the specified deviations for which each requirement has at least the yield `wanted`, to first order.
 
-    `names` are the names of the m entries, `lines` those of the l requirements. `reach` (l,) is the change of a requirement's value towards
-    its limit; the fraction `wanted` of the samples does not exceed this change. `share` (m, l) is the fraction of the square of `reach` due
-    to each entry. `together` is the factor on all deviations, limited by the requirement `binding`; it is 0 if the nominal design has no
-    margin or too many samples fail. `alone` (m,) are factors on single entries with the others unchanged; the requirements `binds` (m,)
-    limit these factors. `equal` (m,) are simultaneous factors on all entries, for which each entry uses the same fraction of the margin. A
-    factor is infinite if the entry has no effect. `alone` and `equal` are NaN (unknown) if a distribution has a mean other than zero
-    (asymmetric interval). `then` is the yield if the changes of all responses in the sample are multiplied by `together`.
+    `names` are the names of the m entries. `lines` are the names of the l requirements. `reach` (l,) is the change of a requirement's value
+    towards its limit; the fraction `wanted` of the samples does not exceed this change. `share` (m, l) is the fraction of the square of
+    `reach` due to each entry. `together` is the factor on all deviations, limited by the requirement `binding`; it is 0 if the nominal
+    design has no margin or too many samples fail. `alone` (m,) are factors on single entries with the others unchanged; the requirements
+    `binds` (m,) limit these factors. `equal` (m,) are simultaneous factors on all entries, for which each entry uses the same fraction of
+    the margin. A factor is infinite if the entry has no effect. `alone` and `equal` are NaN (unknown) if a distribution has a mean other
+    than zero (asymmetric interval). `then` is the yield if the changes of all responses in the sample are multiplied by `together`.
     """
 
     wanted: Annotated[float, Called("yield")]
@@ -74,11 +75,11 @@ class Allowance:
 
 
 def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary) -> Allowance:
-    """Compute the allowable deviations for the specification. Without a specification, deviations are unlimited.
+    """Compute the allowable deviations for the specification. Without requirements, deviations are unlimited.
 
     Responses are linearised in the deviations if derivatives and sample agree. For other responses, the quantile of the sample is used,
-    with variance contributions from the samples of single entries. All changes of responses are assumed to be proportional to the
-    deviations, which is accurate for small deviations.
+    with variance contributions from the samples in which only one entry deviates. All changes of responses are assumed to be proportional
+    to the deviations, which is accurate for small deviations.
     """
     names = tuple(study.columns)
     columns = [names.index(line.column) for line in found.lines]

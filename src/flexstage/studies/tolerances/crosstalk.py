@@ -50,7 +50,7 @@ class PoseMeasure(Measure):
 def command(bench: StageResults, point: str) -> Command:
     """Compute the nominal matrices for motions of a point of the platform.
 
-    Raises `DesignError` for stages whose strokes do not determine the platform, and for points of other bodies.
+    Raises `DesignError` if the strokes do not determine the platform's pose, or if the point is on another body.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import bench_of
@@ -126,8 +126,8 @@ def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
     stroke) C e_j. C are the nominal strokes per command, corrected for lost motion (`Command.gains`). The strokes in the ratio are full
     strokes. T are the motions per stroke of the elastic stage with scatter; X transfers the motion to the nominal point. In closed loop
     (`held`), a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j, where
-    R_s,real are the readings per motion of the stage with scatter. For the nominal stage, x is e_j in both cases, except for parasitic
-    motions in open loop with fewer than six motions.
+    R_s,real are the readings per motion of the stage with scatter. For the nominal stage, x is e_j in both cases. In open loop, a stage
+    with fewer than six motions has parasitic motions in addition.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import bench_of

@@ -27,7 +27,7 @@ _MANY = 64
 
 @dataclass(frozen=True)
 class Copies(Plan):
-    """Plan of a tolerance study: `count` samples with all scatter, then, for each entry, `alone` samples with its scatter only.
+    """Plan of a tolerance study: `count` samples with all scatter, then `alone` samples for each entry, with scatter of this entry only.
 
     The samples of single entries are always a Latin hypercube, because they are few. `groups` contains the number of variables of each
     entry.
@@ -96,7 +96,7 @@ class Tolerance(Study):
 
     @property
     def lines(self) -> tuple[tuple[str, Requirement], ...]:
-        """The requirements, with the column of each measure: `limit NAME` if a response with this name is another measure."""
+        """The requirements with their column names. A column is named `limit NAME` if a response NAME has another measure."""
         named = ((line_name(each), each) for each in self.limits)
         return tuple((name if line_name(self.responses.get(name, each)) == name else f"limit {name}", each) for name, each in named)
 
@@ -118,7 +118,7 @@ class Tolerance(Study):
         return {**plain, **{f"scatter.{each.name}": repr(each) for each in self.scatters}, **point}
 
     def sample(self, start: int, stop: int) -> Array:
-        """Compute the deviations (n, d) of samples `start` to `stop` (excluded), zero for entries without scatter in a sample."""
+        """Compute the deviations (n, d) of samples `start` to `stop` (excluded). Entries without scatter in a sample have deviation 0."""
         if not isinstance(self.plan, Copies):
             return super().sample(start, stop)
         rows = []
@@ -133,7 +133,7 @@ class Tolerance(Study):
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers in which samples differ; `None` if samples are so few that their analysis is faster without a plan."""
+        """The numbers that differ between samples; `None` if there are few samples, which are faster to analyse without these numbers."""
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
@@ -143,7 +143,7 @@ class Tolerance(Study):
         return tuple("no measure" if each is None else each for each in found)
 
     def measure_on(self, bench: StageResults, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
-        """Evaluate the measures `wanted` from the analysis results `bench` of a stage. Entries that are None are omitted."""
+        """Evaluate the measures `wanted` from the analysis results `bench` of a stage. The result is None for entries that are None."""
         requested = any(isinstance(each, PoseMeasure) for each in wanted)
         found = {}
         if self.commanded is not None and requested:
@@ -172,7 +172,7 @@ def line_name(line: Measure) -> str:
 
 
 def nominal_command(design: Mechanism, point: str) -> Command:
-    """Compute the nominal matrices of a controller for a point. Raises `DesignError` if the strokes do not determine the platform.
+    """Compute the nominal matrices of a controller for a point. Raises `DesignError` if the strokes do not determine the pose.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> nominal_command(parallelogram(), "platform").coordinates

@@ -1,4 +1,4 @@
-"""Distributions of deviations: normal, optionally truncated, and uniform. Those of asymmetric tolerances have an offset."""
+"""Distributions of deviations: normal, optionally truncated, and uniform. The distribution of an asymmetric tolerance has an offset."""
 
 from __future__ import annotations
 

@@ -37,8 +37,8 @@ _MOST = 10**7
 def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     """Read a study's file with sections `[scatter]` and, optionally, `[tolerance]`.
 
-    Raises `DesignError` with every error. Examples are unknown addresses (with the nearest names), deviations that are not positive or too
-    large for a number, and `independent` for a single number.
+    Raises one `DesignError` that lists all errors. Examples of errors are unknown addresses (with the nearest names), deviations that are
+    not positive, deviations that are too large for the number that they change, and `independent` for an address of a single number.
 
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):

@@ -1,4 +1,4 @@
-"""Numbers of an entry of `[scatter]`: kinds, shared parts and units expanded into numbers of single instances."""
+"""Numbers of an entry of `[scatter]`. Kinds, shared parts and units are expanded into numbers of single instances."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ KINDS: Mapping[str, tuple[type, ...]] = {
     "rods": (Rod,),
     "stacks": (Piezo,),
 }
-"""Kinds of parts for entries: `hinges.thickness` is the thickness of every notch, neck, leaf and compound hinge."""
+"""Kinds of parts in entries of `[scatter]`: `hinges.thickness` is the thickness of every notch, neck, leaf and compound hinge."""
 PLACED = ("units", "gauges")
 """Kinds with a placement: `units.shift` is the shift of every instance of a unit."""
 _NONE = "no kind has a similar name"

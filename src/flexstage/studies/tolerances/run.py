@@ -52,7 +52,7 @@ class Toleranced(StudyResult):
 
     @property
     def responses(self) -> Annotated[tuple[ResponseSpread, ...], VIEW]:
-        """The responses, with the measures of the specification."""
+        """Distributions of the responses and of the measures of the requirements."""
         return tuple(self._response(column, name) for column, name in enumerate(self.study.measures))
 
     @property
@@ -89,7 +89,7 @@ def tolerance(
     how: Run = DEFAULT,
     progress: Progress | None = None,
 ) -> Toleranced:
-    """Run a tolerance study. If a `path` is specified, the samples are stored in this results file, as by `sweep`.
+    """Run a tolerance study. If a `path` is specified, the samples are stored in this results file.
 
     Raises `DesignError` in the same cases as `sweep`.
 

@@ -25,8 +25,8 @@ from flexstage.studies.tolerances.distribution import NONE, REACH, Distribution
 class Scatter:
     """An entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in the SI unit of `quantity`.
 
-    `members` are groups of addresses with a common deviation: one group for common scatter, one for each instance for individual scatter.
-    `relative`: deviations are fractions of the design's value. `source` is the value of `address` in the file.
+    `members` are groups of addresses with a common deviation. Common scatter has one group; individual scatter has one group for each
+    instance. If `relative` is true, deviations are fractions of the design's value. `source` is the value of `address` in the file.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Scatter:
         return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
-        """Return the entry's variables, one for each member. With several, each name ends with the address or the vector component."""
+        """Return the entry's variables, one for each member. If there are several, each name ends with the address or component."""
         reach = REACH * self.distribution.size
         low, high = self.distribution.ends or (-reach, reach)
         several = len(self.members) > 1
@@ -60,10 +60,10 @@ class Scatter:
 
 @dataclass(frozen=True)
 class Deviation(Variable):
-    """A deviation of numbers, from a `distribution`. `scatter` is the name of its entry.
+    """A random deviation of one or more numbers, with a `distribution`. `scatter` is the name of the entry of `[scatter]`.
 
-    Bounded deviations are between `low` and `high`; for an unbounded normal distribution, these are -5 and 5 standard deviations.
-    `relative`: deviations are fractions of the design's value (0.01 is one per cent).
+    Bounded deviations are between `low` and `high`; for an unbounded normal distribution, `low` and `high` are -5 and 5 standard
+    deviations. If `relative` is true, deviations are fractions of the design's value (0.01 is one per cent).
     """
 
     distribution: Distribution = NONE
@@ -94,7 +94,10 @@ class Deviation(Variable):
 
 @dataclass(frozen=True)
 class Target:
-    """A number with scatter at `address`: the `nominal` value, plus the sum of variables multiplied by factors (pairs in `factors`)."""
+    """A number with scatter at `address`: the `nominal` value plus a sum of variables times `factors`.
+
+    `factors` contains pairs of the index of a variable and its factor.
+    """
 
     address: str
     nominal: float
@@ -102,7 +105,7 @@ class Target:
 
 
 def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, str]) -> tuple[Target, ...]:
-    """List all numbers with deviations. Numbers of shared parts precede their overrides.
+    """List all numbers with deviations. Numbers of shared parts precede the numbers of instances that override them.
 
     `shared` maps the address of a number in a single instance to the address in the shared part. If all instances have equal deviations,
     the shared number is changed instead, because fewer different parts are faster to compute.

@@ -36,11 +36,12 @@ class Slopes:
 
 
 def slopes(study: Tolerance) -> Slopes:
-    """Compute the derivatives of all columns of a study: of frequencies from the modes, of the others by complex step.
+    """Compute the derivatives of all columns of a study.
 
-    For a mass-normalised mode phi with the eigenvalue lambda, d lambda = phi^T (dK - lambda dM) phi, with the stiffness matrix K and the
-    mass matrix M. Smoothness is tested in eight random directions, with steps of plus and minus a thousandth of the scatter. A response is
-    smooth if its two changes are opposite and agree with the derivative.
+    Derivatives of frequencies are computed from the modes, all other derivatives by complex step. For a mass-normalised mode phi with the
+    eigenvalue lambda, d lambda = phi^T (dK - lambda dM) phi, with the stiffness matrix K and the mass matrix M. Smoothness is tested in
+    eight random directions, with steps of plus and minus a thousandth of the scatter. A response is smooth if its two changes are opposite
+    and agree with the derivative.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> found = slopes(leaf_study())

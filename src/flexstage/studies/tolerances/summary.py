@@ -1,4 +1,4 @@
-"""Summary of samples: distributions, yield of each requirement and of all, variance contributions, crosstalk."""
+"""Summary of samples: distributions, yield of each requirement and of all together, variance contributions, crosstalk."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ class Spread:
 class ResponseSpread(RequestedMeasure):
     """Distribution of a response [SI] over the samples with values.
 
-    `linear_deviation` is the standard deviation by first-order propagation; it is valid if `linear` is true. The fractions of the variance
-    due to each entry of `[scatter]` are computed from derivatives, and from the samples of one entry alone. `derivatives` are with respect
-    to every number with scatter.
+    `linear_deviation` is the standard deviation by first-order propagation; it is valid if `linear` is true. `share_by_derivatives` and
+    `share_by_copies` are the fractions of the variance due to each entry of `[scatter]`. The first is computed from derivatives, the second
+    from samples in which only one entry deviates. `derivatives` contains the derivative with respect to every variable.
     """
 
     nominal: float
@@ -85,7 +85,7 @@ class Yield:
 
     @property
     def share(self) -> Annotated[float, VIEW, SHARE, Heading("yield", mark=Graded(1.0, 0.9))]:
-        """Fraction of the samples."""
+        """Fraction of the samples that comply."""
         return self.kept / self.copies
 
     @property
@@ -136,7 +136,7 @@ class Crosstalk:
 
     The commanded motion is subtracted from the pose. `kind` is `open` (the nominal mapping R_a commands the strokes) or `held` (a
     controller regulates the pose that the nominal mapping R_s^-1 measures). `nominal` and `mean` are signed. `deviation` is the standard
-    deviation, `usual` the 95th percentile of the absolute errors, and `worst` their maximum, all in SI.
+    deviation. `usual` is the 95th percentile of the absolute errors, and `worst` is their maximum. All statistics are in SI units.
     """
 
     kind: str
@@ -247,9 +247,9 @@ def _ratio(parts: Array, whole: Array) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
-    """Compute the variances (m, r) of r responses in the samples with the scatter of one entry only, or mean squares about a `centre`.
+    """Compute the variances (m, r) of r responses in the samples with the scatter of one entry only.
 
-    If the study has only one entry, the whole sample is used.
+    If `centre` is specified, compute mean squares about it instead. If the study has only one entry, the whole sample is used.
     """
     count, alone = study.copies, getattr(study.plan, "alone", 0)
     rows = []

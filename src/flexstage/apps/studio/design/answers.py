@@ -1,4 +1,4 @@
-"""Values returned by tasks of the studio, without the messages to its page."""
+"""Values that tasks of the studio return, except the messages to the page."""
 
 from __future__ import annotations
 

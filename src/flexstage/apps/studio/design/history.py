@@ -49,7 +49,7 @@ class Stored:
 
 @dataclass(frozen=True)
 class History:
-    """The present text, earlier texts and undone texts. `revision` counts all changes; `page` made the last one."""
+    """The present text, earlier texts and undone texts. `revision` counts all changes; `page` made the last change."""
 
     text: str
     past: tuple[str, ...] = ()

@@ -67,7 +67,7 @@ def discard(place: Path) -> None:
 
 
 def drafts(path: Path) -> dict[Path, Draft]:
-    """Return the unsaved texts of this design, left by ended studios, by journal, the newest first."""
+    """Return the unsaved texts of this design that ended studios left, by journal file, the newest first."""
     found: dict[Path, Draft] = {}
     with contextlib.suppress(OSError, DesignError):
         for place in _folder().glob(f"{_stem(path)}-*.json"):

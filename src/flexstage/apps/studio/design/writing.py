@@ -16,8 +16,8 @@ _DIGITS, _EXACT = 6, 12
 def write(text: str, file: str, address: str, value: str | float) -> str:
     """Return the text with one number set.
 
-    `value` is a string with any unit of the quantity, a formula or a relative change, or a number in SI units, rounded to six digits.
-    Raises `DesignError` for an unknown address, or if the design would become invalid.
+    `value` is a string or a number. A string contains a value with a unit, a formula or a relative change. A number is in SI units, and is
+    rounded to six digits. Raises `DesignError` for an unknown address, or if the design would become invalid.
     """
     stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
     patched = patch(text, {address: stated}, where=file)

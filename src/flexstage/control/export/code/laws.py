@@ -156,7 +156,7 @@ def _gains(law: Decentralised, laws: list[PID], step: float) -> tuple[ProgramSet
         ProgramSetting("proportional", np.array([each.proportional for each in laws]), named),
         ProgramSetting("integral", np.array([each.integral for each in laws]), "integral gains [1/s]"),
         ProgramSetting("derivative", np.array([each.derivative for each in laws]), "derivative gains [s]"),
-        ProgramSetting("tracking", np.array(follows), "fraction of (applied - commanded) that an integrator follows per sample"),
+        ProgramSetting("tracking", np.array(follows), "anti-windup: correction per sample over (applied - commanded)"),
     )
 
 

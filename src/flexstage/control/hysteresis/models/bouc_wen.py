@@ -87,11 +87,11 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
 
 @check_arguments
 def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.0, skew: float = 0.5) -> BoucWen:
-    """Construct the Bouc-Wen model of a stack from its settled major loop over `volts`: `stroke` [m] and relative `width` (0.15: 15 %).
+    """Construct the Bouc-Wen model of a stack from `stroke` [m] and relative `width` (0.15: 15 %) of its settled major loop over `volts`.
 
-    `sharpness` is beta times the voltage range: if it is large, h saturates early. `skew` is gamma/beta. Since h is proportional to A, A
-    and the gain d follow from two linear equations for stroke and width. Raises `DesignError` if the stroke of the constructed loop would
-    not rise with the voltage everywhere.
+    The symbols A, beta, gamma, d and h are those of `BoucWen`. `sharpness` is beta times the voltage range; with a large value, the lag h
+    saturates early. `skew` is gamma/beta. The lag h is proportional to A. Therefore, A and the gain d follow from two linear equations for
+    stroke and width. Raises `DesignError` if the stroke of the constructed loop would not rise with the voltage everywhere.
 
     >>> model = bouc_wen(150e-6, (0.0, 1000.0), 0.15)
     >>> loop = major_loop(model, (0.0, 1000.0), count=101)

@@ -15,10 +15,11 @@ from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlin
 
 @check_arguments
 def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
-    """Compute the model that inverts `model` exactly, sample by sample. It also has plays between two envelopes.
+    """Compute the Prandtl-Ishlinskii model that inverts `model` exactly, sample by sample.
 
-    The model has thresholds r_i, weights p_i, and envelopes a before and b after the plays; P_j = p_0 + ... + p_j is the slope of the
-    virgin curve beyond r_j. The thresholds s_j, weights q_j and envelopes a' and b' of the inverse model are
+    Both models consist of plays between two envelopes. The plays of `model` have the thresholds r_i and the weights p_i. The envelope a is
+    before the plays, and the envelope b is after the plays. P_j = p_0 + ... + p_j is the slope of the virgin curve beyond r_j. The
+    thresholds s_j, weights q_j and envelopes a' and b' of the inverse model are
 
         s_j = sum_{i<=j} p_i (r_j - r_i),   q_0 = 1/p_0,   q_j = -p_j / (P_j P_{j-1}),   a' = b^-1,   b' = a^-1
 

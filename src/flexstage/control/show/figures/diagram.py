@@ -29,7 +29,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Diagram:
-    """Content of a block diagram: blocks from error to pose, and from pose to its estimate, in signal order.
+    """Content of a block diagram: blocks `forward` from the error to the pose, and `back` from the pose to its estimate, in signal order.
 
     `onto` are external signals, each with the name of the block that it enters. If `fed_forward`, the reference also bypasses the
     controller. If not `closed`, the diagram ends at the pose.
@@ -43,7 +43,7 @@ class Diagram:
 
 
 def loop_diagram(diagram: Diagram) -> Any:
-    """Plot the block diagram as a matplotlib Figure: error to pose above, pose to its estimate below; blocks of the computer shaded.
+    """Plot the block diagram as a matplotlib Figure, with the forward path above the feedback path, and the blocks of the computer shaded.
 
     >>> blocks = (Block("controller", "PI", True), Block("stage"))
     >>> len(loop_diagram(Diagram(blocks, (Block("gauges"), Block("R_s^-1", digital=True)))).axes)

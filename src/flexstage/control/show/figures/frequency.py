@@ -22,7 +22,7 @@ _NEAR = 4.0
 
 
 def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) -> Any:
-    """Plot open loops, each with the others closed (Bode plot): magnitude and phase, modes, margins (`spots`).
+    """Plot each open loop, with the other loops closed, as a Bode plot with modes (`marks`) and margins (`spots`).
 
     Lines mark the magnitude 1 and the phase -180 degrees.
     """
@@ -127,7 +127,7 @@ def _measured_panel(axes: Any, found: ReadLines, index: int) -> None:
 
 
 def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
-    """Plot closed-loop poles (n,) in the z plane, and the damping ratios of the loop and of the stage `alone` against frequency.
+    """Plot closed-loop `poles` (n,) in the z plane; plot damping ratios over frequency for `poles` and for open-loop poles `alone`.
 
     >>> len(pole_figure(np.array([0.9 + 0.1j, 0.9 - 0.1j]), 1e-4).axes)
     2
@@ -226,7 +226,7 @@ def legend_of_lines(figure: Any, panels: Iterable[Any], columns: int = 8) -> Non
 
 
 def legend_above(axes: Any, columns: int = 8) -> None:
-    """Add the legend of a panel above it."""
+    """Add a legend above a panel."""
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=columns, handlelength=1.6, columnspacing=1.1, borderaxespad=0.2)
 
 

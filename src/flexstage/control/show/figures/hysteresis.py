@@ -14,7 +14,7 @@ from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, pan
 
 
 def hysteresis_figure(wanted: Array, reached: Mapping[str, Array]) -> Any:
-    """Plot the `reached` strokes (n,) [m] of each name, and their errors, as functions of the requested strokes `wanted` (n,).
+    """Plot named series of strokes `reached` (n,) [m], and their errors, over the requested strokes `wanted` (n,).
 
     >>> way = 1e-6 * np.sin(np.linspace(0.0, 6.0, 50))
     >>> len(hysteresis_figure(way, {"without inverse": 0.9 * way}).axes)

@@ -17,7 +17,7 @@ _ROW = 0.24
 
 
 def noise_share_figure(found: NoiseBudget) -> Any:
-    """Plot the fraction of every source in the mean square of each coordinate, and the rms of the coordinate."""
+    """Plot which fraction of each coordinate's mean square is due to each source, and print the coordinate's rms."""
     squares, coordinates = np.asarray(found.by_kind.values), short_names(found.output_names)
     total = np.sum(squares, axis=1)
     with style_context():
@@ -42,7 +42,7 @@ def noise_share_figure(found: NoiseBudget) -> Any:
 
 
 def noise_spectrum_figure(found: NoiseBudget) -> Any:
-    """Plot the amplitude density of each coordinate, and its rms accumulated from the lowest frequency, in a column for each unit."""
+    """Plot the amplitude density of each coordinate, and its rms accumulated from the lowest frequency; each unit has its own panels."""
     units = tuple(dict.fromkeys(found.units))
     with style_context():
         figure = canvas(FULL, 3.5)

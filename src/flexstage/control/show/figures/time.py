@@ -128,7 +128,7 @@ def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: 
 
 
 def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
-    """Plot a plan view of the path: reference, and motion with magnified error; the legend contains the factor.
+    """Plot a plan view of the reference, and of the motion with magnified error; the legend contains the magnification.
 
     >>> from flexstage.show.figures.style import canvas
     """

@@ -79,13 +79,15 @@ class AmplifierSetup(AmplifierForm):
 
 @dataclass(frozen=True)
 class ChargeSetup(AmplifierSetup):
-    """Charge amplifiers for stacks; their data are those of voltage amplifiers, converted to the voltage of an unloaded stack.
+    """Charge amplifiers for stacks. They have the keys of voltage amplifiers (`AmplifierSetup`), and further keys.
+
+    A voltage in a key of `AmplifierSetup` stands for a charge: the charge of an unloaded stack at this voltage.
 
     `coupling` is the electromechanical coupling k of the stack, at most the coupling k33 of its ceramic (0.7 for soft PZT). At constant
-    charge the stack is stiffer by the factor 1/(1 - k^2). Below the `corner` the drive acts as a voltage drive. With a `leakage` resistance
-    R parallel to the stack's capacitance C, the corner is 1/(2 pi R C). `residual_hysteresis` is the fraction of hysteresis and creep that
-    remains above the corner. The default is one fifth (Ge & Jouaneh, IEEE Transactions on Control Systems Technology 4 (1996) 209, cited by
-    Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, chapter 12).
+    charge the stack is stiffer by the factor 1/(1 - k^2). Below the frequency `corner`, the drive acts as a voltage drive. With a `leakage`
+    resistance R parallel to the stack's capacitance C, the corner is 1/(2 pi R C). `residual_hysteresis` is the fraction of hysteresis and
+    creep that remains above the corner. The default is one fifth (Ge & Jouaneh, IEEE Transactions on Control Systems Technology 4 (1996)
+    209, cited by Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, chapter 12).
     """
 
     kind: ClassVar[str] = "charge"
@@ -102,10 +104,10 @@ class ChargeSetup(AmplifierSetup):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Check the data of the voltage amplifier; also check that the coupling is specified, and the corner exactly once."""
+        """Check the data of the voltage amplifier, the presence of the coupling, and that either corner or leakage is specified."""
         yield from super().faults
         if self.coupling is None:
-            advice = "Use e.g. coupling = 0.7. An estimate from data-sheet values, d^2 k / C, is too large"
+            advice = "Use e.g. coupling = 0.7. An estimate from stroke per volt, stiffness and capacitance is too large"
             yield Finding("amplifier.coupling", "charge drive needs the electromechanical coupling of the stack", advice)
         if (self.corner is None) == (self.leakage is None):
             given = "are both specified" if self.corner is not None else "are both missing"

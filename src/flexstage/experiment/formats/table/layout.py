@@ -108,7 +108,7 @@ def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int])
         at = next(broken, rows[-1])
         line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
         wrong = "a field is not a number" if count == columns else f"wrong number of fields (got {count}, expected {columns})"
-        what = f'{wrong} between rows of numbers: "{line}"'
+        what = f'{wrong} in a line between rows of numbers: "{line}"'
         yield Finding(
             f"{path}:{at + 1}", what, f'Correct this line; if line {rows[0] + 1} is not a row of numbers, start that line with "#"'
         )

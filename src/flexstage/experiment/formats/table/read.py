@@ -62,7 +62,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     if lines is not None and own.text("format") != RECORD_FORM and (is_stated or time is None):
         return read_arrays(_responses(path, layout, samples, options, lines), replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
     if time is None and not options.rate and "rate" not in said:
-        what = f"no time column in: {', '.join(layout.names[:12])}"
+        what = f"no column contains times (columns: {', '.join(layout.names[:12])})"
         raise refuse(str(path), what, 'Assign the times (option array "time=..."), or specify the rate (option rate)')
     return read_record(samples, said, options, time)
 
@@ -123,8 +123,8 @@ def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
 def complete_rows(path: Path, layout: Layout, options: Options, announced: int | None, *, closed: bool) -> TableSamples:
     """Read all columns of a table, and check that it has the `announced` number of lines.
 
-    A truncated file is read without its last line if the options accept this fault. With `closed`, the last line must end with a line feed:
-    otherwise its last number may be truncated.
+    A truncated file is read without its last line if the options accept this fault. If `closed` is true, the last line must end with a line
+    feed, because its last number may otherwise be truncated.
     """
     whole = index_table(path, layout)
     ends = _ends_with_newline(path)

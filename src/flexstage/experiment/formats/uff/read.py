@@ -82,8 +82,8 @@ def _nothing(path: Path, found: list[DataSet]) -> Finding:
         return Finding(str(path), "it has no function at nodal degrees of freedom (data set 58)", "Export time histories or responses")
     counts = Counter(KINDS.get(each.function.kind, f"function of type {each.function.kind}") for each in found)
     listed = ", ".join(f"{count} x {kind}" for kind, count in counts.items())
-    what = f"only {listed}, no time histories or frequency response functions"
-    return Finding(str(path), what, "Modes need the phase between channels: export the time histories, or frequency response functions")
+    what = f"it contains only {listed}, but no time histories or frequency response functions"
+    return Finding(str(path), what, "Modes follow from phases between channels: export the time histories, or frequency response functions")
 
 
 def _name(found: DataSet) -> str:

@@ -1,4 +1,4 @@
-"""Index of a universal file: its functions and the positions of their values, without reading the values."""
+"""Index of a universal file: its functions, with the positions of binary values or with the ASCII values."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class DataSet:
 def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
     r"""Scan the functions of a file in order, with errors for unreadable functions; other data sets are skipped.
 
-    Values in fixed columns stay in the file; values of other layouts are read at once. A truncated function contains its available values
-    and a description of the missing part.
+    Binary values stay in the file; ASCII values are read at once. A truncated function contains its available values and a description of
+    the missing part.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -60,13 +60,11 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
     for group in close:
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
-            found.append(
-                f"{min(inputs, outputs)} inputs or outputs cannot separate more modes than those near {near} Hz. Add inputs and outputs."
-            )
+            found.append(f"{min(inputs, outputs)} inputs or outputs cannot show further modes near {near} Hz. Add inputs and outputs.")
     systematic = np.flatnonzero(modes.widening > 1.0)
     if len(systematic):
         listed = ", ".join(f"{abs(poles[index]):.5g} Hz (intervals {modes.widening[index]:.2g} times wider)" for index in systematic)
-        window = " The window of the responses is unknown; if there was one, damping is too large." if known.unstated else ""
+        window = " The window of the responses is unknown; if a window was used, damping is too large." if known.unstated else ""
         found.append(
             f"the fit leaves a systematic residual near {listed}. The mode may be nonlinear, close to another, excited by unrecorded "
             f"forces, or changing during the test. Test with a lower amplitude, a longer duration or finer frequency lines.{window}"

@@ -22,8 +22,8 @@ _HALVINGS = 40
 class Drive:
     """Excitation of the modes (k,) of a band by the recorded inputs.
 
-    `chance` (k,) is the probability of at least the observed correlation with the inputs if the inputs do not excite the mode. `elsewhere`
-    (k,) is the fraction of the motion in the half-power band that the inputs do not explain.
+    `chance` (k,) is the probability that a mode not excited by the inputs shows at least the observed correlation with the inputs.
+    `elsewhere` (k,) is the fraction of the motion in the half-power band that the inputs do not explain.
     """
 
     chance: Array
@@ -38,9 +38,9 @@ def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) 
     The modal force is regressed on inputs and transients. The regression uses the lines within four half-widths, but at least three lines
     for each regressor. If the inputs do not excite the mode, the explained fraction is F-distributed even with unrecorded forces or tones.
     A line is weighted with the inverse of its variance a + b |j f - p|^2. The variance a of the unrecorded force follows from the residual;
-    b is the variance of q due to noise of the outputs. The variance is increased near the pole, so that as many lines as regressors have
-    similar weights. Transients count as inputs if the inputs explain at least nine tenths of their power, as for an impact at the start of
-    a record.
+    b is the variance of q due to noise of the outputs. Near the pole, the variance is increased so that at least as many lines as
+    regressors have similar weights. Transients count as inputs if the inputs explain at least nine tenths of their power, as for an impact
+    at the start of a record.
 
     >>> from flexstage.experiment.example import one_mode_band, one_mode_record
     >>> from flexstage.experiment.identification.likelihood import fit

@@ -39,9 +39,9 @@ class PeakCause(Enum):
     WEAK = "weak"
     """Resonance that noise could cause."""
     UNSURE = "unsure"
-    """Resonance in outputs alone whose width is not significantly different from zero, or differs between divisions into bands."""
+    """Resonance in a test without recorded inputs: its width is not significantly above zero, or differs between divisions into bands."""
     FREE = "free"
-    """Free oscillation that decays too little to determine its damping, or its excitation by an input."""
+    """Free oscillation that decays too little: neither its damping nor its excitation by an input can be determined."""
     NARROW = "narrow"
     """Single prominent line: too few lines to distinguish a resonance from a tone."""
 
@@ -51,9 +51,9 @@ class Peak:
     """Peak at `frequency` in Hz, with a half-power `width` in Hz; tones, free oscillations and single lines have no width.
 
     `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
-    peak without a mode. For a tone, it is the probability that noise is as pure; for a weak or narrow peak, that noise is as strong; for an
-    undriven peak, that inputs explain as much motion by chance. For an accepted mode, the probability is at most 1e-9; under floor
-    excitation, the width is also at least the line spacing.
+    peak without a mode. For a tone, it is the probability that noise looks like an equally pure sinusoid. For a weak or narrow peak, it is
+    the probability that noise causes an equally strong peak. For an undriven peak, it is the probability that inputs explain as much motion
+    by chance. For an accepted mode, the probability is at most 1e-9; under floor excitation, the width is also at least the line spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -61,8 +61,8 @@ class Peak:
         "frequency outputs width resolution chance reason",
         notes=(
             (
-                "Probability: that of such a peak if there is no mode; if not driven, that inputs explain as much motion by chance. A mode "
-                "requires a probability of at most 1e-9 and, under floor excitation, a width of at least the line spacing."
+                "Probability of such a peak if there is no mode. Not driven: probability that inputs explain as much motion by chance. "
+                "A mode requires a probability of at most 1e-9 and, under floor excitation, a width of at least the line spacing."
             ),
         ),
     )
@@ -88,7 +88,7 @@ class Peak:
         if self.doubt is PeakCause.UNDRIVEN:
             return "not driven by the recorded inputs, but by an unrecorded force or an unsteady tone. Record all excitation of the stage."
         if self.doubt is PeakCause.UNSURE:
-            return "its damping is too uncertain: noise or a neighbouring mode could cause it. Record longer."
+            return "its damping is too uncertain: noise or a neighbouring mode could cause this peak. Record longer."
         if self.doubt is PeakCause.WEAK:
             return "noise could cause such a peak. Record longer, or increase the drive."
         lines = f"a peak at a single line (spacing {self.resolution:.4g} Hz)"
@@ -109,9 +109,9 @@ def peaks(
 ) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
 
-    The list contains removed tones, `refused` resonances, which the inputs do not excite, and `lost` resonances, which are not significant.
-    It contains a lost resonance only if noise alone would give an equally strong peak with a probability below 1/1000. For an analyser's
-    responses, the list also contains prominent single lines.
+    The list contains removed tones, `refused` resonances (not excited by the inputs) and `lost` resonances (not significant). A lost
+    resonance is listed only if noise alone would give an equally strong peak with a probability below 1/1000. For an analyser's responses,
+    the list also contains prominent single lines.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record

@@ -16,8 +16,8 @@ _WIDTHS = 1.0
 def excess(band: Band, modal: Modal) -> Array:
     """Compute the excess of the residual chi-squared in each cell (c,), in standard deviations.
 
-    In every cell, responses linear in frequency are fitted to the residual. With noise only, the explained power divided by the noise
-    variance has a mean and a variance equal to the number of complex parameters.
+    In every cell, responses linear in frequency are fitted to the residual. If the residual contains only noise, the explained power
+    divided by the noise variance has a mean and a variance equal to the number of complex parameters.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit

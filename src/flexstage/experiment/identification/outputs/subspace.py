@@ -62,7 +62,7 @@ class Band:
 
 
 def band_covariances(record: Record, low: float, high: float) -> tuple[list[list[Band]], Responses]:
-    """Compute output covariances of bands from `low` to `high` in Hz, for both divisions into bands, and the output density in unit/Hz^0.5.
+    """Compute the outputs' covariances in bands from `low` to `high` [Hz], for two divisions into bands, and their densities [unit/Hz^0.5].
 
     Each block is Fourier transformed. The lines of a band are multiplied for each pair of outputs, and tapered at the ends of the band. The
     inverse transform of these products is the band's covariance R(l) = E[y(n + l) y(n)^H] of the outputs y. This procedure is equivalent to

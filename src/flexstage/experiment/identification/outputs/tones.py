@@ -29,8 +29,8 @@ class Tone:
     """Sinusoid of constant `frequency` f [Hz] in samples `start` to `stop`: 2 Re(a exp(2 pi j f t)), with t = 0 at `start`.
 
     `amplitudes` (p,) are the complex amplitudes a of all outputs, zero for outputs without the tone. `chance` is the probability that noise
-    is as pure as this tone. `fades` is the fraction of the amplitude that decays from start to stop; zero for a steady tone. A tone that
-    decays is a free oscillation, which is not removed from the record.
+    looks like an equally pure sinusoid. `fades` is the fraction of the amplitude that decays from start to stop; zero for a steady tone. A
+    tone that decays is a free oscillation, which is not removed from the record.
     """
 
     frequency: float

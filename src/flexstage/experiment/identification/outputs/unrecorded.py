@@ -138,7 +138,7 @@ def _floor_findings(records: Sequence[Record]) -> list[Finding]:
             Finding(
                 "--excitation floor",
                 f"wrong number of records (got {len(records)}, expected 1)",
-                "Use one record: the floor's directions differ between records",
+                "Use one record: the directions of the floor motion differ between records",
             )
         ]
     if records[0].length < BLOCKS * _FEWEST:

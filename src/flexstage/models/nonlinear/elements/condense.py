@@ -13,7 +13,7 @@ from flexstage.models.nonlinear.elements.element import Tangent, field_system
 
 @dataclass(frozen=True, eq=False)
 class FlexureResponse:
-    """Response of a flexure's q + 6 unknowns: `still` (..., q + 6) with fixed end, and `moved` (..., q + 6, 6) per motion of the end.
+    """Response of a flexure's q + 6 unknowns: `still` (..., q + 6) with fixed end, and `moved` (..., q + 6, 6) per unit motion of the end.
 
     For a flexure with weight, `moved` has three more columns: the derivatives of the response with respect to the weight in the start
     frame.

@@ -1,8 +1,8 @@
 """Superelements at large displacements: linear in a corotated frame that follows their ports (docs/nonlinear.md, 31).
 
 The frame R is the mean rotation of the port bodies: the sum of log(R^T R_i) is zero. In this frame, the ports have the displacements u_i =
-R^T (x_i - x) - (X_i - X) and the rotations log(R^T R_i). x and X are the means of the current and nominal port positions. The linear
-stiffness acts on the non-rigid part of these motions.
+R^T (x_i - x) - (X_i - X) and the rotations log(R^T R_i). x and X are the means of the current port positions x_i and the nominal port
+positions X_i, and R_i is the rotation of port body i. The linear stiffness acts on the non-rigid part of these motions.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def port_motion(element: Corotated, position: Array, turn: Array) -> PortMotion:
 
 
 def resist(element: Corotated, position: Array, turn: Array, gravity: Array) -> Array:
-    """Compute the internal forces (..., 6 p) on the port bodies, minus the weight under `gravity` (..., 3) [m/s^2]."""
+    """Compute the internal forces (..., 6 p) on the port bodies, minus the element's weight under `gravity` (..., 3) [m/s^2]."""
     ports = port_motion(element, position, turn)
     strain = (element.relative @ ports.motion[..., None])[..., 0]
     force = (element.relative.T @ (element.stiffness @ strain[..., None]))[..., 0]

@@ -1,7 +1,7 @@
 """Single flexure at large displacements: residual of the mixed functional, and its derivatives (docs/nonlinear.md, 1 to 8).
 
 All quantities are in the flexure's start frame. Lengths are divided by the flexure's length, forces by E I / L^2. Tables of a law have
-leading axes of flexures. States have one more axis, of b load cases: amplitudes (..., b, q), force and moment (..., b, 3).
+leading axes of flexures. States have one more axis for the b load cases: amplitudes (..., b, q), force and moment (..., b, 3).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Shape:
 
     `place` (..., b, n, 3) is the position r, `rate` (..., b, n, 3) is its derivative r' along the length, `end` (..., b, 3) is r at the
     end. `soft` (..., b, n, 3, 3) is the compliance R C_n R^T of stretch and shear, with the rotation R of the section and the compliance
-    C_n in its axes; `tension` (..., b, n) the axial force N. The loads are the `force` at the end and the `weight`.
+    C_n in its axes; `tension` (..., b, n) is the axial force N. The loads are the `force` at the end and the `weight`.
     """
 
     rule: Rule
@@ -44,12 +44,12 @@ class Shape:
 class Tangent:
     """Residual `gradient` (..., b, q) of the amplitudes, and the blocks of its derivative (docs/nonlinear.md, 6).
 
-    With respect to the amplitudes, `hessian` H (..., b, q, q) is the derivative of the residual, `reach` B_f (..., b, 3, q) of the end
-    position, and `turning` J_th (..., b, 3, q) of the end rotation. `soft` F_n (..., b, 3, 3) is the derivative of the end position with
-    respect to the end force.
+    Derivatives with respect to the amplitudes: `hessian` H (..., b, q, q) of the residual, `reach` B_f (..., b, 3, q) of the end position,
+    and `turning` J_th (..., b, 3, q) of the end rotation. `soft` F_n (..., b, 3, 3) is the derivative of the end position with respect to
+    the end force.
 
-    Only with weight: `hung` (..., b, 3, q) is the derivative of the mean position with respect to the amplitudes, `swayed` (..., b, 2, 3,
-    3) with respect to end force and weight.
+    Only with weight: `hung` (..., b, 3, q) is the derivative of the mean position with respect to the amplitudes, and `swayed` (..., b, 2,
+    3, 3) the derivative of the mean position with respect to end force and weight.
     """
 
     gradient: Array

@@ -1,8 +1,9 @@
 """Links with a 6x6 stiffness about a centre, at large displacements: springs, stacks, specified matrices, joints (docs/nonlinear.md, 15).
 
 Both bodies are rigidly extended to frames a and b at the centre. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the
-half-way frame R_m = R_a exp(psi / 2). It does not depend on the order of the ends. A strut (a spring with a length L) turns about both
-ends: d_x = |x_b - x_a + (R_a + R_b) e_1 L / 2| - L. Its force acts along the line between its ends.
+half-way frame R_m = R_a exp(psi / 2). The half-way frame does not depend on the order of the ends. A strut (a spring with a length L) turns
+about both ends: d_x = |x_b - x_a + (R_a + R_b) e_1 L / 2| - L. Here e_1 is the x axis of the link frame. The force of a strut acts along
+the line between its ends.
 
 A part with a length also shortens by its own bending: 1/2 e^T G e is added to e = (d, psi) (`beams.geometric.foreshortening`).
 """
@@ -28,8 +29,7 @@ class Hinges:
     - `stroke` (l, 6, m): free deformation per unit of each input; `thrust` (l, 6, m): wrench on the second body per unit of each input.
     - `push` (l, 6): nominal wrench on the second body.
     - `strut` (l,): length [m] of a strut, which turns about both ends; zero for another link, whose stiffness is about its centre.
-    - `bow` (l, 6, 6, 6): a matrix G for each deformation; foreshortening adds d^T G d / 2 to this deformation, where d are all six
-      deformations.
+    - `bow` (l, 6, 6, 6): a matrix G for each of the six deformations d; foreshortening adds d^T G d / 2 to the deformation.
     - `locked` (c, 2): link number and DOF number of each DOF without deformation.
 
     If the cases belong to different designs, all arrays except `first`, `second` and `locked` have an axis of cases, (l, b, ...).
@@ -104,7 +104,7 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """Compute link wrenches (..., l, b, 6): elastic wrenches, minus wrenches of inputs (b, m) and preloads, plus `held` in locked DOFs."""
+    """Compute link wrenches (..., l, b, 6): elastic, minus those of inputs (b, m) and preloads, plus reactions `held` of locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 

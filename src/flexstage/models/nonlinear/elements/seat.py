@@ -1,4 +1,4 @@
-"""Seat between the ground and some links of a stage: a body with imposed displacements, for assembly errors."""
+"""Seat: a body between the ground and some links of a stage. Imposed displacements of the seat represent assembly errors."""
 
 from __future__ import annotations
 

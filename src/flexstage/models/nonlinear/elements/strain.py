@@ -32,7 +32,7 @@ _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Strains of l flexures by name: the `largest` strain (..., l), and the ratio `curving` (..., l) of plate bending.
+    """Strains of l flexures by name: the `largest` strain (..., l), and the ratio `curving` (..., l).
 
     `curving` is b^2 k / t with the width b, the thickness t and the largest curvature k; NaN for flexures without plate bending.
 
@@ -48,15 +48,15 @@ class Strains:
 
 
 def strains(state: State) -> Strains:
-    """Compute strains at the ends and the integration points of every flexure, for its thinnest section.
+    """Compute strains at the ends and the integration points of every flexure, for the thinnest section of the flexure.
 
     At the throat of a notch or neck of thickness t and radius R, the strain is too low by 1 % at t/R = 0.1, 8 % at 0.04, 19 % at 0.02.
 
     The strain is |N| / (E A) + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. N is the
     axial force, E A the axial stiffness; k_y and k_z are the curvatures relative to the natural shape, k_x is the twist rate, t the
-    thickness and b the width. At a clamped end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with this strain (nu:
-    Poisson's ratio). Stress includes stretch, bending about both axes, section curvature of a leaf, and Saint-Venant torsion. Restrained
-    warping and stress concentration at notches and fillets are neglected.
+    thickness and b the width. At a clamped end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with the same strain,
+    where nu is Poisson's ratio. Stress includes stretch, bending about both axes, section curvature of a leaf, and Saint-Venant torsion.
+    Restrained warping and stress concentration at notches and fillets are neglected.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -89,9 +89,9 @@ def strains(state: State) -> Strains:
 def law_reserve(state: State) -> tuple[float, str]:
     """Return the least remaining fraction of the links' permitted deformation (1: undeformed; 0: limit), and a clause that names the limit.
 
-    The strain limit of flexures is 5 %. The 6x6 stiffness of a link or superelement is a law for small motions, and is limited to motions
-    at which such a law has an error of about 10 %. The limits are a rotation of 0.46 rad between the ends, and a displacement of 0.3 of the
-    stage's diagonal (for a superelement, of the diagonal of its ports). For a spring with a length, the displacement limit is this length.
+    The strain limit of flexures is 5 %. The 6x6 stiffness of a link or superelement is valid for small motions. Its range ends at motions
+    for which the error is about 10 %. The limits are a rotation of 0.46 rad between the ends, and a displacement of 0.3 of the stage's
+    diagonal (for a superelement, of the diagonal of its ports). For a spring with a length, the displacement limit is this length.
     Deformations without stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges

@@ -43,9 +43,9 @@ _AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
 
 @dataclass(frozen=True, eq=False)
 class ProportionalLoading:
-    """Loads and fixed coordinates of one case that are linear in a load factor: values at factor zero, and gains per unit of the factor.
+    """Loads and fixed coordinates of one case, linear in a load factor: values at factor zero, and increments per unit of the factor.
 
-    `options` are used for each equilibrium solution. Stability is evaluated with the rows `kept` of the system of equations.
+    `options` are used for each equilibrium solution. Stability is evaluated with only the rows `kept` of the system of equations.
     """
 
     model: Nonlinear
@@ -76,7 +76,7 @@ class ProportionalLoading:
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Reference stiffnesses at the start of a path: of the stage, for motions scaled by `scale` (n,), and of the weakest flexure."""
+    """Stiffnesses at the start of a path, for reference: of the stage with motions scaled by `scale` (n,), and of the weakest flexure."""
 
     scale: Array
     stage: float
@@ -110,8 +110,8 @@ class Point:
 def continue_path(loading: ProportionalLoading, begin: Point, length: float, points: int) -> Iterator[Point]:
     """Generate equilibria beyond `begin`, at most `length` apart in the norm of body motion.
 
-    Translations are divided by the longest flexure length, rotations are in radians. The path ends after a distance of `points` times
-    `length`, or if there is no equilibrium even after a small fraction of `length`.
+    Translations are divided by the longest flexure length, rotations are in radians. The path ends at a distance of `points` times
+    `length`. It ends earlier if there is no equilibrium even at a small fraction of `length` beyond the last one.
     """
     gone = 0.0
     for point in march(loading, begin, length, longest=length):
@@ -125,8 +125,8 @@ def march(loading: ProportionalLoading, begin: Point, length: float, *, longest:
     """Generate equilibria beyond `begin`; the step length is controlled by the path curvature and the prediction errors.
 
     A step is repeated with a shorter length in three cases: the tangent rotates too far, the equilibrium is too far from the tangent, or
-    slope or stiffness differs too much from its prediction. This repetition prevents a step from passing over two events. The path ends if
-    the step is too small a fraction of the longest previous step.
+    the slope or the stiffness differs too much from its prediction. The repetition prevents a step from passing over two events. The path
+    ends if the step is too small a fraction of the longest previous step.
     """
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):
@@ -232,8 +232,8 @@ def first_point(loading: ProportionalLoading, pose: Pose, factor: float) -> Poin
 def critical_point(loading: ProportionalLoading, pose: Pose, factor: float, into: Array | None) -> Point:
     """Build the first point of a path at a limit point, or at a bifurcation in the direction `into` (n,) of the branch.
 
-    At a limit point, `pose` is only close to this point. The factor increases along the path from a stable `pose`, and decreases along the
-    path from an unstable `pose`.
+    At a limit point, `pose` need only be close to the limit point. The factor increases along the path from a stable `pose`, and decreases
+    along the path from an unstable `pose`.
     """
     point = first_point(loading, pose, factor)
     along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(loading.scale * into)
@@ -264,7 +264,7 @@ def point_at(
 def complete_paths(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
 ) -> EquilibriumSolution:
-    """Continue by arc length all cases that reached only a fraction of their load, up to the whole load or to the limit point."""
+    """Continue by arc length all cases that reached only a fraction of their load; a path ends at the whole load or the limit point."""
     partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])

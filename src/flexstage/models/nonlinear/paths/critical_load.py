@@ -44,8 +44,8 @@ class Kind(Enum):
 class Critical:
     """Critical point: the `factor` on a load, the buckling mode `shape` (n, 6) of its `bodies`, and its `kind`.
 
-    The sign of the shape makes its largest component positive (of equal components, the first). The largest component is found with
-    translations divided by the longest flexure length.
+    The sign of the shape is such that its largest component is positive (if several are equal, the first). The largest component is found
+    with translations divided by the longest flexure length.
 
     `link` names a flexure that buckles between fixed ends; otherwise it is empty. `state` is the last stable state. `bend` is the factor of
     an earlier imperfect bifurcation, or `None`.
@@ -63,7 +63,7 @@ class Critical:
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
     """Return the number (...) of independent motions that decrease the potential energy of each case: 0 if stable, -1 without equilibrium.
 
-    This is the number of negative eigenvalues of the stage stiffness and of the flexures' stiffnesses with fixed ends (without
+    The result is the number of negative eigenvalues of the stage stiffness and of the flexures' stiffnesses with fixed ends (without
     multipliers).
 
     Fixed coordinates in `locked` remain fixed (default: all). Other fixed coordinates are released, and their reactions act as loads.
@@ -91,20 +91,20 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
 
     Constant loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can also be part of
     `load`: their values then grow with the factor. The name `weight` in `load` stands for the weight of the stage; it requires the argument
-    `weight` = 0. The name `stated forces` stands for the forces and preloads of the description; it requires `stated` = 0. Other
-    coordinates in `hold` keep their values. Stability is evaluated with the coordinates in `locked` fixed (default: all coordinates in
-    `hold`); the others are free, and their reactions act as loads.
+    `weight` = 0. The name `stated forces` means the forces and preloads of the description; it requires `stated` = 0. Coordinates in
+    `hold` that are not in `load` keep their values. For the evaluation of stability, the coordinates in `locked`
+    (default: all coordinates in `hold`) stay fixed. The other coordinates in `hold` are released, and their reactions act as loads.
 
-    The path starts without load or, if `known` is specified, from this state under the full load. Arc-length steps resolve the path's
-    curvature and the change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero
-    (to a relative `tolerance` of the factor).
+    The path starts without load. If the state `known` is specified, the path starts from this state, under the full load. Arc-length steps
+    resolve the path's curvature and the change of the lowest stiffness. The result is the first limit point or bifurcation, where the
+    lowest stiffness is zero (to a relative `tolerance` of the factor).
 
     The function raises:
 
     - a `DesignError` for a zero load, and for a stage that is unstable at the start;
-    - a `NoCriticalLoadError` if no stiffness is zero up to `most` times the load;
-    - a `LowerBoundError` if the path ends earlier, because a law reaches its limit (`strain.law_reserve`) or there is no further
-      equilibrium.
+    - a `NoCriticalLoadError` if the lowest stiffness does not reach zero up to `most` times the load;
+    - a `LowerBoundError` if the path ends earlier, because the stiffness law of a part reaches its limit of validity (`strain.law_reserve`)
+      or there is no further equilibrium.
     """
     if not any(load.values()):
         raise refuse("load", "the load is zero", "Specify a force or moment with its size")
@@ -145,8 +145,8 @@ def _at(
 def require_continuation(start: State, end: State) -> None:
     """Raise `DesignError` if a stable state `end` is not reached from `start` by proportional change of loads and fixed coordinates.
 
-    Causes of the error are a limit point, a bifurcation or an end on the path, or a path to another equilibrium. If `end` is unstable, or
-    if its path starts unstable, there is no error.
+    Causes of the error are a limit point or a bifurcation on the path, an early end of the path, or a path that leads to another
+    equilibrium. If `end` is unstable, or if its path starts unstable, there is no error.
     """
     one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
     continuation = continued(one, other)

@@ -18,13 +18,13 @@ from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.spatial.rotation import logarithm
 
 FIRST = 1e-4
-"""Length of the first step in body motion: translations over the stage size, rotations in radians."""
+"""Length of the first step in body motion: translations divided by the stage size, rotations in radians."""
 NEAR = SolverOptions(halvings=0, iterations=15, arcs=0)
 """Solver options for solutions that start from a neighbouring state."""
 _POINTS, _JUMPS = 400, 8
 """Maximum number of equilibria along a path, and of steps onto another path."""
 VANISHED = 1e-5
-"""Stiffness, relative to the start of the path, below which it counts as zero. A step onto another path leaves a larger value."""
+"""Stiffness, divided by its start value, below which it counts as zero. After a step onto another path, the quotient is larger."""
 _SAME = 1e-6
 """Distance of two equal poses, over the stage size and in radians."""
 _FLAT, _SOON, _WELL = 0.01, 1.01, 1.25
@@ -35,7 +35,7 @@ _NEXT, _ROUND = 1e-9, 1e-7
 """Last stable state before a critical one, over the last step; permitted rounding of the factor between them."""
 
 Reserve = Callable[[Point], tuple[float, str]]
-"""Function that returns the remaining range of the laws at a point (negative beyond it), and the law with the least range."""
+"""Function that returns the unused fraction of the laws' range at a point (negative outside the range), and a clause naming the limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ def follow_to_event(
     """Follow a path to the first zero of the stiffness, or to the factor `most`; `length` is the length of the first step.
 
     Raises `LowerBoundError` if the path ends earlier, without a further equilibrium. If `reserve` is specified, the path also ends where
-    the reserve is zero, or well beyond an imperfect bifurcation.
+    the returned fraction is zero, or well beyond an imperfect bifurcation.
     """
     last, bent = begin, None
     for _ in range(_JUMPS):
@@ -80,7 +80,7 @@ def follow_to_event(
             break
     if abs(last.stiffness) < VANISHED:  # Newton's method has no solution at a zero own stiffness of a flexure
         return FollowedPath(last, last, _bend(bent, last), last.factor)
-    raise _not_followed(last, "no equilibrium was found near the last one", None if reserve is None else bent)
+    raise _not_followed(last, "no equilibrium was found near the last equilibrium", None if reserve is None else bent)
 
 
 def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: Point | None, tolerance: float) -> FollowedPath | None:
@@ -98,7 +98,7 @@ def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: 
 
 
 def continued(start: Task, end: Task) -> EquilibriumSolution:
-    """Compute the equilibrium of one case that is reached from `start` when all loads and fixed coordinates change linearly to `end`.
+    """Compute the equilibrium of one case that is reached from `start` if all loads and fixed coordinates change linearly to `end`.
 
     The equilibrium `end` is returned unchanged if it is near the start, or if its path starts unstable. An unstable `end` is also returned
     unchanged if the path has an imperfect bifurcation.

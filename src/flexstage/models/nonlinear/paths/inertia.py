@@ -33,11 +33,11 @@ def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
 
 
 def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Array) -> tuple[float, Array]:
-    """Compute the lowest eigenvalue of the scaled stiffness among admissible motions, and its motion (n,).
+    """Compute the lowest eigenvalue of the scaled stiffness among admissible motions, and the motion (n,) of this eigenvalue.
 
     The rows and columns of the stiffness are divided by `scale` (n,).
 
-    If there are no admissible motions, the result is 1 and a zero motion.
+    If there are no admissible motions, the function returns the eigenvalue 1 and a zero motion.
     """
     freedoms = model.freedoms
     if not isinstance(whole.matrix, np.ndarray):
@@ -66,7 +66,7 @@ def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
 
 
 def stiffness_scale(model: Nonlinear, whole: System) -> Array:
-    """Compute the square roots (n,) of the stiffness diagonal, which make motions independent of units of measurement."""
+    """Compute the square roots (n,) of the stiffness diagonal. Motions scaled by them do not depend on the units of measurement."""
     diagonal = whole.matrix[0].diagonal()[: model.freedoms]
     size = np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
     typical = np.sqrt(np.max(diagonal / size**2, initial=0.0) or 1.0)

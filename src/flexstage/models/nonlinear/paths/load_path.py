@@ -34,10 +34,10 @@ class Event:
 
 @dataclass(frozen=True, eq=False)
 class LoadPath:
-    """Load path: k equilibria along `drive`, with its `values` (k,) [m, rad, N, N m, or a load factor] and a `state` for each.
+    """Load path of k equilibria along `drive`: its `values` (k,) [m, rad, N, N m, or a load factor] and a `state` for each value.
 
-    `motions` (k,) is the number of unstable motions while the drive coordinate is fixed (0: stable; -1: no equilibrium). `locked`
-    coordinates are fixed along the path.
+    `motions` (k,) is the number of unstable motions while the drive coordinate is fixed (0: stable; -1: no equilibrium). The coordinates
+    `locked` are fixed along the path.
 
     `turns` (k - 1,) are the extreme loads between adjacent points (NaN: the load is monotonic there). `turns` is `None` if the caller
     specified the values.
@@ -80,8 +80,8 @@ def load_path(
 
     The `drive` is a fixed coordinate (`platform.y`), an actuator's stroke or force, or a wrench component.
 
-    Coordinates in `hold` are fixed at their values. The iteration at every value starts at the nominal position or, if it does not
-    converge, at the state of the nearest converged value.
+    Coordinates in `hold` are fixed at their values. The iteration at every value starts at the nominal position. If this iteration does not
+    converge, it is repeated from the state of the nearest converged value.
 
     All stable states of the result are on one continuous path along the drive. At values that this path does not reach, stable states are
     replaced by NaN. Raises `DesignError` for an unknown drive.
@@ -101,7 +101,7 @@ def load_path(
 
 
 def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
-    """Compute the equilibrium at the start of a path along a drive, with the drive coordinate fixed, and the value of the drive there."""
+    """Compute the equilibrium at the start of a path along a drive, with the drive coordinate fixed, and the drive's value at the start."""
     driven = drive in {channel.name for channel in unloaded.model.inputs}
     if not bool(unloaded.converged):
         return unloaded, 0.0
@@ -148,7 +148,7 @@ def equilibria_along(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> State:
-    """Compute the states (k,) of a load path like `load_path`, but without stability, events and a check of continuity.
+    """Compute the states (k,) of a load path like `load_path`, but without stability and events, and without a check of continuity.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -241,7 +241,7 @@ def continuation(
     names = [channel.name for channel in model.inputs]
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
-        raise refuse(", ".join(unknown) or "load", "not a load of this stage, or zero", "Specify a force, moment or stroke with its size")
+        raise refuse(", ".join(unknown) or "load", "unknown load, or load of zero", "Specify a force, moment or stroke with its size")
     loading = proportional_loading(start, load, 0.0, options)
     begin = first_point(loading, start.pose, 0.0)
     return _along(loading, [begin, *continue_path(loading, begin, step, points)], start.held)
@@ -259,7 +259,7 @@ def post_buckling_path(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Compute the post-buckling path: equilibria on the branch at the first bifurcation under `load` times a varying factor.
+    """Compute the post-buckling path: equilibria on the branch that begins at the first bifurcation under `load` times a varying factor.
 
     The first state is the last stable state before the bifurcation. From the first to the second state, the stage moves in the direction of
     the buckling mode `Critical.shape`; with `side` -1, in the opposite direction. `step` and `points` have the same meaning as in

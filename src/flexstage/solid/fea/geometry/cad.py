@@ -1,4 +1,4 @@
-"""CAD of a component: its pieces as one conforming solid (or several, one for each medium), with named interface faces."""
+"""CAD of a component: its pieces as one solid for each medium, with conforming faces between the solids and named interface faces."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from flexstage.solid.fea.solver.component import Component, Interface, Joint, gr
 _TOLERANCE = 1e-3
 """Faces match within this distance [mm]."""
 _AREA = 1e-4
-"""... and within this share of their area."""
+"""Areas of faces match within this fraction."""
 _WITHIN, _ALONG = 1e-9, 1.0 - 1e-9
-"""Distance from a plane up to which a point is in it [m], and the smallest cosine between equal directions."""
+"""Largest distance [m] of a point in a plane from the plane, and the smallest cosine between directions that count as equal."""
 
 _PLATE = 0.22
-"""Cylinders thinner than this share of their diameter are plates: usual elements are smaller than their curvature requires."""
+"""Cylinders shorter than this fraction of their diameter are plates: their usual elements are smaller than their curvature requires."""
 
 
 @dataclass(frozen=True)
 class Cad:
-    """A drawn component: `shape` [mm] has faces named `faces`, and one solid, named `medium 0`, ..., for each of `media`.
+    """A drawn component: `shape` [mm] has faces named `faces`, and for each of `media` one solid, named `medium 0`, ....
 
     If the component is cut at `mirrors`, `shape` is its positive side.
     """
@@ -82,10 +82,10 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 def mirrors_of(component: Component) -> Mirrors:
     """Return the planes normal to y and z about which a component of one medium is symmetric and can be cut.
 
-    Each joint, link and body must itself be symmetric about the plane. Leaves are cut only if they are thin, and only across their width:
-    other cuts would make their flat elements even flatter, or leave fewer elements across the leaf. Stacks, rods, cylinders (except round
-    plates), spheres and round holes are not cut. The mesher divides an arc less finely than a full circle; a round piece would therefore
-    lose mass if it were cut.
+    Each joint, link and body must itself be symmetric about the plane. Leaves are cut only if they are thin, and only across their width.
+    Other cuts would make the flat elements of a leaf even flatter, or leave fewer elements across the leaf. Stacks, rods, cylinders (except
+    round plates), spheres and round holes are not cut. The mesher divides an arc less finely than a full circle; a round piece would
+    therefore lose mass if it were cut.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> mirrors_of(bar())
@@ -197,7 +197,7 @@ def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
 
 
 def region(piece: Piece, points: Array) -> Array:
-    """Estimate distances (n,) [m] of points (n, 3) from a piece: the largest component of the vector from its bounding box, 0 inside it.
+    """Estimate distances (n,) [m] of points (n, 3) from a piece: largest component of the vector from its bounding box, 0 inside the box.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> region(bar().pieces[0], np.array([[0.05, 0.0, 0.0], [0.05, 0.0, 0.007]])).round(9).tolist()
@@ -209,7 +209,7 @@ def region(piece: Piece, points: Array) -> Array:
 
 @SESSION.keep(KEPT)
 def half_extents(piece: Piece) -> Array:
-    """Return half the sizes (3,) of a piece's bounding box in its own frame [m].
+    """Return half the side lengths (3,) [m] of a piece's bounding box in the piece's own frame.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> half_extents(bar().pieces[0]).round(9).tolist()

@@ -12,13 +12,13 @@ from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, coordinates, 
 from flexstage.solid.fea.geometry.stage_pieces import Stage
 
 TOUCHING = 1e-6
-"""Distance up to which outlines touch [m]."""
+"""Largest distance [m] at which outlines count as touching."""
 _NO_VOLUME = 1e-6
-"""Common volumes below this are rounding [mm^3]."""
+"""Largest common volume [mm^3] that is attributed to rounding."""
 
 
 def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
-    """Yield a question for every pair of near outlines of different bodies or links, except a link and a body that it joins.
+    """Yield a question for every pair of near outlines of different bodies or links, except pairs of a link and a body that it joins.
 
     `clearance` is the required distance [m]. Equal pairs of outlines in several instances share one question.
 

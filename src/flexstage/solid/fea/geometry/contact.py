@@ -1,4 +1,4 @@
-"""Contact checks: links must meet their bodies, each body must form one solid, and all other outlines must have clearance.
+"""Contact checks: links must meet their bodies, each body must form one solid, and there must be clearance between all other outlines.
 
 All checks are made together before meshing; lengths within this file are in mm, as in CAD.
 """
@@ -24,7 +24,7 @@ from flexstage.solid.fea.solver.component import components
 from flexstage.spatial.frame import Frame, identity
 
 _DEPTH = 0.01
-"""Depth of an extruded end face for the contact test."""
+"""Depth [mm] to which an end face is extruded for the contact test."""
 _GAP = 1e-5
 _SHARE = 1e-3
 _NEAR = 2e-3
@@ -34,10 +34,10 @@ _NEAR = 2e-3
 def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Finding, ...]:
     """Return the errors that prevent the outlines of a stage from forming the described solids; empty for a sound stage.
 
-    If a link has a shape, each of its end faces must be entirely on the outline of the body that it joins. Bodies without outlines are not
-    checked. Outlines of the ground are checked only for links in the same unit. Outlines of one body must form one solid, joined over
-    faces. All other outlines must be farther apart than `clearance` [m]; contact (a distance up to 1 um) is an error. No step, gap, edge or
-    face may be much smaller than the local geometry.
+    If a link has a shape, each of its end faces must be entirely on the outline of a body that the link joins. Bodies without outlines are
+    not checked. Outlines of the ground are checked only for links in the same unit. Outlines of one body must be joined over faces and form
+    one solid. All other outlines must be farther apart than `clearance` [m]; a distance up to 1 um counts as contact and is an error. No
+    step, gap, edge or face may be much smaller than the local geometry.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())

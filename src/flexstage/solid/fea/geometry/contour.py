@@ -14,7 +14,7 @@ from flexstage.solid.fea.geometry.piece import MILLIMETRES
 
 _STATIONS = 65
 _SAME = 1e-9
-"""Largest distance [mm] between a curve and the contour it replaces."""
+"""Largest distance [mm] between a drawn curve and the contour that the curve replaces."""
 
 
 def contour_edges(contour: Contour, rise: float, sign: float) -> list[occ.TopoDS_Shape]:
@@ -59,6 +59,6 @@ def _points(start: float, end: float, share: Array, heights: Array) -> list[occ.
 
 
 def segments(points: Sequence[tuple[float, float]]) -> list[occ.TopoDS_Shape]:
-    """Draw segments between points of the xy plane [mm], none between equal points."""
+    """Draw segments between consecutive points of the xy plane [mm]; no segment between equal points."""
     pairs = pairwise(points)
     return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairs if np.hypot(b[0] - a[0], b[1] - a[1]) > _SAME]

@@ -1,7 +1,7 @@
-"""Drawing: forms as CAD solids, in millimetres (required by the CAD kernel's absolute tolerances).
+"""Drawing of forms as CAD solids in millimetres, because the CAD kernel has absolute tolerances.
 
-Every hinge is drawn at the origin and then moved: cuts far from the origin fail to mesh. Arcs that would be tangent to an end face are
-shortened by 3 % of their radius: tangent faces form a wedge without an angle, which cannot be meshed.
+Every hinge is drawn at the origin and then moved, because shapes that are cut far from the origin cannot be meshed. Arcs that would be
+tangent to an end face are shortened by 3 % of their radius: two tangent faces form a wedge of angle zero, which cannot be meshed.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from flexstage.spatial.frame import Frame
 from flexstage.spatial.rotation import rotation_vector
 
 SHORTENED = 0.03
-"""Shortening of arcs at an end face to which they would be tangent, relative to their radius."""
+"""Shortening of arcs that would be tangent to an end face, divided by their radius."""
 _STATIONS = 33
 
 Curve = list[occ.TopoDS_Shape]
@@ -54,7 +54,7 @@ def draw_form(form: Form) -> occ.Solid:
 
 
 def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
-    """Draw a hinge with stubs of lengths `stubs` [m] at its ends; the element size at the neck is `size` times the thickness.
+    """Draw a hinge with stubs of the lengths `stubs` [m] at its ends; the element size at the neck is `size` times the thickness.
 
     The hinge is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
 
@@ -235,7 +235,7 @@ class Shape:
     """Functions that draw a kind of part as a CAD solid [mm]. `draw` draws the part at the origin, `specimen` draws it with stubs.
 
     By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts need `specimen.cut`, which blunts arcs at
-    rigid faces: complete arcs would meet these faces at angles that cannot be meshed.
+    rigid faces. Complete arcs would meet the rigid faces at angles that cannot be meshed.
     """
 
     draw: Callable[[Any], occ.Solid]

@@ -20,16 +20,16 @@ from flexstage.parts.mass import tensor
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, coordinates
 
 _DIGITS = 6
-"""Digits of a box [mm]: the kernel widens it by 1e-7."""
+"""Decimals of a box's side lengths [mm]: the kernel widens boxes by 1e-7 mm."""
 TOLERANCE = 1e-3
-"""Largest permitted difference between specified values and the file, relative to mass, inertia, and longest side (for positions)."""
+"""Largest permitted difference between specified values and the file, divided by the mass, the inertia, or the longest side (positions)."""
 
 
 @dataclass(frozen=True, eq=False)
 class ImportedProperties:
     """Properties of a solid in its file's axes: `size` (side lengths) and `middle` of the bounding box [m], volume [m^3], centroid [m].
 
-    `inertia` (3, 3) is for unit density, about the centroid [m^5]. `sha256` is the digest of the file.
+    `inertia` (3, 3) [m^5] is the inertia tensor about the centroid for unit density. `sha256` is the digest of the file.
     """
 
     sha256: str
@@ -187,7 +187,7 @@ def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
     names = _names(path, solids)
     if name is None and len(solids) != 1:
         what = f"it contains {len(solids)} solids: {', '.join(names)}"
-        raise refuse(str(path), what, f'Select one: solid = "{next(iter(names), "")}"; a body may have several')
+        raise refuse(str(path), what, f'Select one: solid = "{next(iter(names), "")}"; a body may have several solids')
     place = int(name[1:]) if name is not None and re.fullmatch(r"#[0-9]{1,9}", name) else 0
     if name is not None and names.count(name) != 1 and not 0 < place <= len(names):
         what = f'{names.count(name)} of its solids have the name "{name}" (expected 1); the names are {", ".join(names)}'

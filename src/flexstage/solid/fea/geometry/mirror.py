@@ -14,20 +14,20 @@ from netgen import occ
 from flexstage.base.number import Array
 
 MIRRORS = {1: "across y", 2: "across z"}
-"""Names of the faces in the planes y = 0 and z = 0 at which a drawing is cut, by the normal axis."""
+"""Names of the cut faces in the planes y = 0 and z = 0, by the axis normal to the plane."""
 
 _NEAR = 1e-6
-"""Relative to the drawing's size: tolerance for points in a plane."""
+"""Tolerance for points in a plane, divided by the drawing's size."""
 _FAR = 4.0
-"""Size of the half space that cuts a drawing, over its furthest corner."""
+"""Size of the half space that cuts a drawing, divided by the distance of the drawing's furthest corner."""
 
 
 @dataclass(frozen=True)
 class Mirrors:
     """Symmetry planes through the origin, given by their normal `axes` (1: y, 2: z). Only the positive side of each plane is drawn.
 
-    The kind of a motion is a number with one bit for each axis in sequence. A bit is set if the motion is odd across the plane normal to
-    this axis.
+    The kind of a motion is a number with one bit for each of the `axes`, in their order. The bit of an axis is set if the motion is odd
+    across the plane normal to the axis.
 
     >>> both = Mirrors((1, 2))
     >>> both.copies, both.twist_kinds(np.eye(3)).tolist()  # x, y, z, rx, ry, rz
@@ -38,7 +38,7 @@ class Mirrors:
 
     @property
     def copies(self) -> int:
-        """Number of sides that form the whole, which is also the number of kinds of motion."""
+        """Number of sides that form the whole; the number of kinds of motion is the same."""
         return 2 ** len(self.axes)
 
     @property
@@ -48,13 +48,13 @@ class Mirrors:
         return np.stack([np.where(self.is_odd(odd, axis), -1.0, 1.0) if axis in self.axes else odd**0.0 for axis in range(3)], axis=1)
 
     def is_odd(self, kinds: Array, axis: int) -> Array:
-        """Return which of the `kinds` are odd across one of the planes."""
+        """Return a mask of the `kinds` that are odd across the plane normal to `axis`."""
         return (kinds >> self.axes.index(axis)) % 2 == 1
 
     def twist_kinds(self, rotation: Array) -> Array:
-        """Return the symmetry kinds (6,), see `is_odd`, of translations along the columns of `rotation` and of rotations about them.
+        """Return the kinds (6,) of the translations along the columns of `rotation` and of the rotations about these columns.
 
-        Each column is parallel or normal to the planes.
+        Each column must be parallel or normal to each plane.
         """
         translations = self.kinds(np.abs(rotation[list(self.axes)]) > 0.5)
         return np.concatenate([translations, translations ^ (self.copies - 1)])
@@ -64,7 +64,7 @@ class Mirrors:
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Compute inner products (n, k) of motions over the whole from those over one `side`; they are zero for different kinds."""
+        """Compute inner products (n, k) of motions over the whole from those over one `side`; products of different kinds are zero."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Geometric tests of near outlines by CAD, evaluated once for all instances."""
+"""Geometric tests of near outlines by CAD; each test is evaluated once for all instances."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.base.finding import Finding
 from flexstage.spatial.frame import Frame
 
 Answer = tuple[str, str]
-"""Problem and advice."""
+"""Description of a problem, and advice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class Question:
 
 
 def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
-    """Evaluate each distinct question once. Report its errors at its first location, with the names of its other locations.
+    """Evaluate each distinct question once. Report the errors of a question at its first location, with the names of its other locations.
 
     >>> asked = [Question("a", name, lambda: [("it is loose", "Hold it")]) for name in ("B1/front", "B2/front")]
     >>> [str(finding) for finding in findings_of(asked)]

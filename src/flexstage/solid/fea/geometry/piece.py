@@ -21,19 +21,19 @@ from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
 
 _DIGITS = 10
-"""Digits of a crystal's tensor, relative to its largest entry: instances of a unit must be equal."""
+"""Digits to which a crystal's tensor is rounded, relative to its largest entry, so that instances of a unit have equal tensors."""
 
 _CROSSED = 1e-9
-"""Coupling of normal and shear strains by rounding alone, divided by the largest entry."""
+"""Largest coupling of normal and shear strains that is attributed to rounding, divided by the largest entry."""
 
 MILLIMETRES = 1e3
 """CAD units per metre."""
 
 OFFERED_SHAPES: Register[object] = Register("flexstage.shapes", {})
-"""Shapes from other packages, without those of `draw`: their versions are available without the CAD kernel."""
+"""Shapes from other packages, without the shapes of `draw`; the versions of these packages are available without the CAD kernel."""
 
 Form: TypeAlias = Shaped | Solid
-"""Description of a shape; compliance matrices and ideal joints have none."""
+"""Description of a shape; compliance matrices and ideal joints have no form."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ class Medium:
     """An elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3].
 
     For a crystal, `tensor` contains the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering shear
-    strains). `young` is then the modulus along x, and `poisson` is such that `shear` is the mean shear modulus of the planes xy and xz;
-    only hinge stubs use these two values.
+    strains). `young` is then the modulus along x, and `poisson` is such that `shear` is the geometric mean of the shear moduli of the
+    planes xy and xz. Only hinge stubs use these two values.
     """
 
     young: float
@@ -92,7 +92,8 @@ class Piece:
 def medium(material: Material, rotation: Array | None = None) -> Medium:
     """Return the medium of a material; for a crystal, the axes of the drawing are the columns of `rotation` (3, 3) in the stage.
 
-    Without `rotation`, the drawing has the axes of the part that orients the crystal; without such a part, it has the stage's axes.
+    Without `rotation`, the drawing has the axes of the part for which the crystal is oriented, or the stage's axes for a crystal that is
+    not oriented.
 
     >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
     7750.0
@@ -141,7 +142,7 @@ def stack_medium(stack: Piezo) -> Medium:
 
 
 def form_of(link: PlacedLink) -> Form | Finding | None:
-    """Return the form of a link's part; `None` for a part with specified stiffness instead of a shape; an error for a part with neither.
+    """Return the form of a link's part, `None` if the part has a specified stiffness instead of a shape, or an error if it has neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -1,4 +1,4 @@
-"""Slivers: steps, gaps, edges and faces of a component that are much smaller than the local geometry; meshes fail or become too fine.
+"""Slivers: steps, gaps, edges and faces of a component that are much smaller than the local geometry; they make meshes fail or too fine.
 
 Lengths within this file are in mm, as in CAD.
 """
@@ -21,9 +21,9 @@ from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.solver.component import Component
 
 SLIVER = 0.05
-"""Largest size of slivers over the thickness of the thinnest piece there."""
+"""Largest size of a sliver, divided by the thickness of the thinnest piece at the sliver."""
 _OWN = 0.5
-"""Largest size of slivers, divided by the smallest edge or width of an isolated piece."""
+"""Largest size of a sliver, divided by the smallest edge or width of the isolated pieces."""
 _NOTHING = 1e-7
 _TOUCHING = 1e-6
 """Largest distance between a sliver's middle and the box of its piece [m], unless the sliver is larger."""
@@ -41,7 +41,7 @@ class _Sliver:
 def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iterator[Finding]:
     """Yield the slivers of every distinct component, drawn as one solid.
 
-    If other errors are known (`coarse`), errors of drawing are omitted.
+    `coarse` means that other errors are already known; errors of drawing are then omitted.
 
     >>> list(sliver_findings([]))
     []

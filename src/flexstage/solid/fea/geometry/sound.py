@@ -1,4 +1,4 @@
-"""Sound stages: outlines are checked before meshing, once for each stage."""
+"""Sound stages, which have outlines without errors: outlines are checked before meshing, once for each stage."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def sound_components(mechanism: Mechanism, cache: Cache | None, cut: Cut = Cut.U
 
 
 def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None = None) -> tuple[Finding, ...]:
-    """Return the errors that prevent a stage's outlines from forming solids. The cache records which stages have no errors.
+    """Return the errors that prevent a stage's outlines from forming solids. The cache records the stages without errors.
 
     Stages with imported solids are always checked, because their files may change.
     """
@@ -46,7 +46,7 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None 
 
 
 def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return the errors that prevent FEA of a stage with outlines; empty if the solver is missing or a link cannot be a solid.
+    """Return the outlines' errors that prevent FEA of a stage; the result is empty without solver or if a link cannot be a solid.
 
     >>> solid_findings(Mechanism("nothing"))
     ()
@@ -62,7 +62,7 @@ def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def check_together(mechanisms: Sequence[Mechanism], cache: Cache | None, pool: Pool | None = None) -> None:
-    """Check stages in parallel and record the sound stages in the cache. Errors are reported later, when a stage is used.
+    """Check stages in parallel and record stages without errors in the cache. Errors are reported later, when a stage is used.
 
     >>> check_together((), None)
     """

@@ -19,7 +19,7 @@ class Stage:
     """The pieces of a stage by address, in the axes of the stage; pieces of the ground have the `body` "ground".
 
     `boxes` contains the outlines of the pieces, `joints` the two ends of every link, `materials` the name of each piece's material. For a
-    stack, this is the name of its part.
+    stack, `materials` contains the name of its part instead.
     """
 
     assembly: Assembly

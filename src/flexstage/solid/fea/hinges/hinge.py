@@ -1,9 +1,9 @@
 """6x6 compliance matrix of a hinge by three-dimensional elasticity, between the ends of its arcs, with an error estimate.
 
-The outer faces of the model are rigid. At each end with a root, a stub of the block is between the hinge and the outer face. The stubs are
-then subtracted as beams, so that the compliance of the roots remains with the hinge. An end without a root is rigid at the end of its arcs.
-A symmetric hinge is cut at its planes of symmetry: each of the six motions is even or odd about each plane, so a quarter with matching
-constraints suffices.
+The outer faces of the model are rigid. At each end on a block (root), a piece of this block (stub) is between the hinge and the outer face.
+The compliances of the stubs as beams are then subtracted, so that the compliance of the roots remains with the hinge. An end without a root
+is rigid at the end of its arcs. A symmetric hinge is cut at its planes of symmetry: each of the six motions is even or odd about each
+plane, so a quarter with matching constraints suffices.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ from flexstage.spatial.frame import identity, transport
 
 _SYMMETRY = 1e-8
 _LATTICE, _INSIDE = 6, 0.015
-"""Steps of the lattice in an element, and its distance from the faces, equal to that of the integration points."""
+"""Steps of the lattice of points in an element, and the lattice's distance from the faces, equal to that of the integration points."""
 _BLUNT = 5e-4
-"""Relative change of the compliance at the hinge's end by blunted wedges of arcs at rigid faces: twice the largest observed."""
+"""Relative change of the compliance at the hinge's end due to blunted wedges of arcs at rigid faces: twice the largest observed change."""
 _NECK = Fineness().neck
 """Elements within round necks are as in a stage."""
 _TELLING, _TELLING_THIN = 3, 4
-"""Lowest order whose change from the previous one is a sufficient error estimate; flat elements of order two lock."""
+"""Lowest order at which the change from the previous order is a sufficient error estimate; flat elements of order two lock."""
 _COARSER = 1.3
-"""Factor on the element size if the usual elements are too many."""
+"""Factor on the element size if the mesh with the usual element size has too many DOFs."""
 _ATTEMPTS = (
     (1.0, 0.5, 1.2),
     (1.0, 0.5, 1.6),
@@ -61,7 +61,7 @@ _ATTEMPTS = (
     (0.6, 0.3, 4.0),
     (0.4, 0.3, 3.0),
 )
-"""Factors on sizes, grading and segments per radius of curvature, tried in this order."""
+"""Factors on element sizes, grading and segments per radius of curvature; the mesher tries them in this order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,17 +132,18 @@ def hinge_compliance(
     """Compute the 6x6 compliance matrix of a hinge by finite elements, to the required accuracy (default 1 %).
 
     One outer face is fixed, and the other is moved rigidly by each of six unit motions about the centre. The displacements u_i due to unit
-    motion i give the stiffness K_ij = u_i^T K_FE u_j, with the finite-element stiffness matrix K_FE. From the compliance K^-1, the
-    compliances of the stubs about the hinge's centre are subtracted. First the order is raised, then the mesh is refined, until the error
-    estimated from the last changes (`estimate.remaining`) is within `accuracy.error`.
+    motion i give the stiffness K_ij = u_i^T K_FE u_j, with the finite-element stiffness matrix K_FE. A stub is a piece of the adjacent
+    block, between an end of the hinge and the outer face. The compliances of the stubs about the hinge's centre are subtracted from the
+    compliance K^-1. First the element order is raised, then the mesh is refined, until the error estimated from the last changes of the
+    result (`estimate.remaining`) is at most `accuracy.error`.
 
-    `roots` selects the ends that are attached to blocks; by default, these are both ends if the profile `rises`, otherwise none. `stub` [m]
-    is the length of a stub. By default, it is the height of the hinge's end if the profile `rises`, otherwise five times the hinge's length
-    scale `grain`.
+    `roots` selects the ends that have a stub; the other ends are rigid. By default, both ends have stubs if the profile rises to the full
+    height of the hinge; otherwise both ends are rigid. `stub` [m] is the length of a stub. The default length is the height of the hinge's
+    end if the profile rises to it, otherwise five times the hinge's length scale `grain`.
 
-    The stub's length is a convention. It changes the compliance along x by 1 to 3 % and along y by about 10 %; if the hinge is several
-    times wider than high, it changes the compliance about x by a large factor. Raises `DesignError` for a part without a shape, for a
-    batch, and if no mesh can be made. The functions in `told` report every mesh and solution.
+    The choice of the stub's length is a convention. Another choice changes the compliance along x by 1 to 3 % and along y by about 10 %. If
+    the hinge is several times wider than high, another choice changes the compliance about x by a large factor. Raises `DesignError` for a
+    part without a shape, for a batch, and if no mesh can be made. The functions in `told` report every mesh and solution.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -165,7 +166,7 @@ def hinge_compliance(
             break
     if last is None:
         what = f"its coarsest mesh has more than the {required.freedoms} DOFs allowed"
-        raise refuse(_label(part), what, "Use --order 3, which starts at order two, or allow more freedoms in the Accuracy (Python)")
+        raise refuse(_label(part), what, "Raise the limit in Python: hinge_compliance(..., Accuracy(freedoms=NUMBER))")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
         compliance=alone,
@@ -266,9 +267,9 @@ def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
     """Return a mesh [mm] of a hinge with stubs, whose outer faces are `start` and `end`. No element is inverted at any order up to `order`.
 
-    For an isotropic material only one symmetric portion is meshed: the quarter at positive y and z, or half of a leaf. Elements are
-    `factor` times the usual size. If the mesher fails or an element is inverted, a few other sizes are tried. Raises `DesignError` if
-    meshing fails with all sizes.
+    For an isotropic material, only a symmetric portion is meshed: the quarter at positive y and z, or half of a leaf. Elements are `factor`
+    times the usual size. If the mesher fails or an element is inverted, a few other sizes are tried. Raises `DesignError` if meshing fails
+    with all sizes.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -309,7 +310,7 @@ def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.M
 
 
 def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
-    """Return the lowest Jacobian determinant [mm^3] over a lattice of points in every element; elements fold first near corners and edges.
+    """Return the lowest Jacobian determinant [mm^3] of all elements, at a lattice of points; elements fold first near corners and edges.
 
     Points on edges are excluded: if two faces of an element are on one smooth surface, the determinant at their common edge is always zero.
 

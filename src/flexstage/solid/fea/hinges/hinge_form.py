@@ -12,11 +12,11 @@ from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.hinges.roots import Roots
 
 NO_ESTIMATE = "an estimate needs two solutions, and the second would exceed the allowed number of unknowns"
-LEAVE = "Compare it with beam theory (flexstage verify), or allow hinge_compliance more freedoms in its Accuracy (Python)"
+LEAVE = "Compare it with beam theory (flexstage verify), or raise the limit in Python: hinge_compliance(..., Accuracy(freedoms=NUMBER))"
 
 
 class HingeForm(NamedTuple):
-    """Input of a hinge computation: the hinge's shape and material, and the `roots`, which are the ends attached to blocks."""
+    """Input of a hinge computation: the hinge's shape and material, and its `roots`, which are the ends attached to blocks."""
 
     part: Shaped
     material: Material
@@ -29,9 +29,10 @@ class HingeSolid:
 
     `compliance` and `stiffness` (6, 6) are for the twist (x, y, z, rx, ry, rz) of the second end relative to the first. `error` estimates
     the largest relative error of the compliance *at the hinge's end*, where the error of each entry ij is divided by sqrt(C_ii C_jj).
-    `changes` (6,) are the last relative changes of the compliance's diagonal about the centre. The entries for y and z change more than the
-    others, because they are differences of lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m].
-    `freedoms`, `elements` and `order` are those of the last solution; `finding` is a warning if the required accuracy was not reached.
+    `changes` (6,) are the relative changes of the compliance's diagonal about the centre between the last two solutions. The entries for y
+    and z change more than the others, because they are differences of lever-arm terms. `whole` (6, 6) is the compliance including the stubs
+    of length `stub` [m]. `freedoms`, `elements` and `order` are those of the last solution; `finding` is a warning if the required accuracy
+    was not reached.
     """
 
     compliance: Array

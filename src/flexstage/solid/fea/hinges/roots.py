@@ -1,4 +1,4 @@
-"""Roots: ends of a hinge on an elastic block, which deforms there, in contrast to ends on rigid bodies."""
+"""Roots: ends of a hinge on an elastic block that deforms near the hinge, in contrast to ends on rigid bodies."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Roots:
 
 
 def own_roots(part: Shaped) -> Roots:
-    """Return the roots of an isolated hinge. If its profile `rises`, both ends are on blocks; otherwise both are on rigid faces.
+    """Return the roots of an isolated hinge. If its profile `rises`, both ends are on blocks; otherwise both ends are on rigid faces.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))

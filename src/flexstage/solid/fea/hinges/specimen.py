@@ -1,9 +1,9 @@
-"""A hinge as a specimen: drawn at the origin, with a stub of its block at each elastic end.
+"""Specimen of a hinge: the hinge drawn at the origin, with a stub of the adjacent block at each end on an elastic block.
 
-If a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline. Half-circle arcs are drawn
-completely: they end perpendicular to the stub's flank, without tangent faces. At a rigid face, to which an arc would be tangent, the arc
-ends at its true end with a blunted wedge. A sharp wedge could not be meshed, and would carry almost no load. All other hinges end on a stub
-wider than themselves on all sides.
+If a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline. Half-circle arcs next to a stub are
+drawn completely: they end perpendicular to the stub's flank, without tangent faces. An arc that would be tangent to a rigid face ends at
+its true end with a blunted wedge. A sharp wedge could not be meshed, and would carry almost no load. Hinges with any other profile end on a
+stub that is larger than the hinge on all sides.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
 
 BLUNTED = 0.06
-"""Thickness of the blunted wedge between an arc and a rigid face, over the arc's smaller semi-axis."""
+"""Thickness of the blunted wedge between an arc and a rigid face, divided by the arc's smaller semi-axis."""
 
 _NEAR = 1e-6
-"""Relative to the hinge's length: tolerance for points in a plane."""
+"""Tolerance for points in a plane, divided by the hinge's length."""
 _LONG = 1.5
-"""Elements of a rod over its diameter."""
+"""Largest element of a rod, divided by the diameter of the rod."""
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
-"""Smallest element over the smaller of width and length of a wide hinge: with arcs, and a leaf."""
+"""Smallest element of a wide hinge, divided by the smaller of its width and length: for a hinge with arcs, and for a leaf."""
 _SMOOTH = 0.5
-"""Largest element of a thin hinge, over the root of length times half the thickness: strains vary over this length."""
+"""Largest element of a thin hinge, divided by sqrt(length x thickness / 2), over which strains vary."""
 _SEAT = 5.0
-"""Size of a block beyond a hinge that does not rise to it, sideways and in depth, over the hinge's `grain`."""
+"""Size of a block beyond a hinge whose profile does not rise, sideways and in depth, divided by the hinge's `grain`."""
 _SEAT_SIZE = 2.0
-"""Largest element of such a block over the hinge's `grain`."""
+"""Largest element of a block beyond a hinge whose profile does not rise, divided by the hinge's `grain`."""
 
 _Curve = list[occ.TopoDS_Shape]
 
@@ -112,7 +112,7 @@ def grain(part: Shaped) -> float:
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
-    """Return section and length [m] of a hinge's stub: its section is that of the end if the profile `rises`, else larger on all sides.
+    """Return section and length [m] of a hinge's stub: the section of the hinge's end if the profile `rises`, else a larger section.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))

@@ -1,8 +1,8 @@
 """Compliance of the stubs of a specimen: prismatic beams, subtracted from the specimen's compliance.
 
-This is independent of the beam theory of hinges (`flexstage.beams`), which is compared with the solid model: both share only the
-description's sections. The shear factor does not depend on Poisson's ratio. A factor that does (Cowper 1966) would change a hinge's shear
-compliance by 1 %: the choice is part of the convention.
+This module is independent of the beam theory of hinges (`flexstage.beams`), which is compared with the solid model: both use only the same
+sections. The shear factor does not depend on Poisson's ratio. A shear factor that depends on Poisson's ratio (Cowper 1966) would change a
+hinge's shear compliance by 1 %. The choice of the shear factor is part of the convention for stubs.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _POINTS = 40
 def beam(section: Section, length: float, medium: Medium) -> Array:
     """Compute the compliance (6, 6) of a prismatic Timoshenko beam along x about its centre; one end stays plane, the other may warp.
 
-    C = diag(L/EA, L^3/12EI_z + k L/GA, L^3/12EI_y + k L/GA, C_rx, L/EI_y, L/EI_z): about the centre, bending and shear are uncoupled; k is
-    the shear factor. Torsion is by Vlasov's theory: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w), with the warping constant C_w. With
-    Saint-Venant torsion, the stubs of a wide hinge would have more compliance than the whole specimen.
+    C = diag(L/(E A), L^3/(12 E I_z) + k L/(G A), L^3/(12 E I_y) + k L/(G A), C_rx, L/(E I_y), L/(E I_z)): about the centre, bending and
+    shear are uncoupled; k is the shear factor. Torsion follows Vlasov's theory: C_rx = L/(G J) (1 - tanh(m)/m), m^2 = G J L^2/(E C_w), with
+    the warping constant C_w. With Saint-Venant torsion, the stubs of a wide hinge would have more compliance than the whole specimen.
 
     >>> from flexstage.parts.section import circle
     >>> beam(circle(2.0), np.pi, Medium(1.0, 0.0, 1.0)).diagonal()[[0, 3, 4, 5]].round(9).tolist()

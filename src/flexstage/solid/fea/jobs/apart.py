@@ -1,4 +1,4 @@
-"""Checking and drawing whole stages in separate processes: a crash of the CAD kernel ends only its process."""
+"""Check and drawing of whole stages in separate processes: a crash of the CAD kernel ends only the separate process."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class _Checking(_Drawing):
 def contacts_apart(
     mechanisms: Sequence[Mechanism], clearance: float = 0.0, limits: Limits = _LIMITS, pool: Pool | None = None
 ) -> list[tuple[Finding, ...]]:
-    """Return the results of `contact_findings` for stages, computed in parallel in separate processes or in those of a `pool`.
+    """Return the results of `contact_findings` for stages, computed in parallel in separate processes or in the processes of a `pool`.
 
     Raises `DesignError` if a process crashes or takes too long.
     """

@@ -1,6 +1,6 @@
-"""Cache of superelements and hinges, as files by content: each is computed once on a machine, and a stopped command resumes.
+"""Cache of superelements and hinges in files by content: each of them is computed once on a machine, and a stopped command resumes.
 
-Files that cannot be read or written cause warnings, not errors: the result is computed again, or not stored.
+Files that cannot be read or written cause warnings, not errors: the result is then computed again, or is not stored.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ SOUND = Kind(".sound", "record of checked outlines")
 
 @dataclass(frozen=True)
 class Cache(CheckedFields):
-    """Folder of stored superelements and hinges.
+    """Folder of stored FEA results: superelements, compliance matrices of hinges, and records of checked outlines.
 
     `limit` [bytes] is the largest total size of each kind of file; the least recently used files are removed first. The default `folder` is
-    that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
+    the value of the environment variable FLEXSTAGE_CACHE, or else the folder flexstage in the user's folder for caches.
     """
 
     folder: Path | None = None
@@ -69,7 +69,7 @@ def folder_of(cache: Cache) -> Path:
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
-    """Return a digest of a superelement's inputs: the content of the component and the options of reduction, without program versions.
+    """Return a digest of a superelement's inputs (content of the component, options of reduction), which excludes program versions.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -114,7 +114,7 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
 
 
 def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
-    """Store a superelement, a hinge or a record of checked outlines in a file, completely or not at all.
+    """Store a superelement, a hinge or a record of checked outlines in a file. The file is written completely or not at all.
 
     >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", None, notice=lambda finding: print(finding.where))
     lever

@@ -1,4 +1,4 @@
-"""Content: the inputs of a component's reduction without names, so that instances and renamed designs are recognised."""
+"""Content: the inputs of a component's reduction without names, so that equal instances and renamed designs have the same content."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cache of the compliance matrices of hinges by content: each is computed once on a machine."""
+"""Cache of the compliance matrices of hinges by content: each matrix is computed once on a machine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy
 
 _SECONDS, _PER_WIDTH, _WIDEST = 0.3, 0.04, 50.0
-"""CPU time [s] of a hinge, and for its width over its thickness up to this one: elements of wider ones are flat."""
+"""CPU time [s] of a hinge, time for each unit of width / thickness, and limit of this ratio, because elements of wider hinges are flat."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class HingeJob(StoredJob):
         return f"hinge {self.name}: error {100.0 * found.error:.2g} %, {found.freedoms:,} unknowns of order {found.order}"
 
     def needed(self, counts: Counts) -> float:
-        """Return the memory of the first solutions [bytes]; higher orders use the available memory."""
+        """Return the memory [bytes] of the solutions up to `order`; the memory of higher orders and finer meshes is not estimated."""
         return needed(counts, self.order, 6)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
@@ -63,7 +63,7 @@ class HingeJob(StoredJob):
         return Finding(self.name, what, "Free memory, or increase --memory")
 
     def work(self, call: Call) -> HingeSolid:
-        """Compute the compliance matrix; in errors, the hinge has the user's name."""
+        """Compute the compliance matrix; error messages contain the user's name of the hinge."""
         from flexstage.solid.fea.hinges.hinge import hinge_compliance
 
         try:

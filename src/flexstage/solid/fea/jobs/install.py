@@ -15,7 +15,7 @@ _INSTALL = f"Install {SOLVER_VERSION} with: pip install 'flexstage[solid]' (Pyth
 
 
 def solver_findings() -> tuple[Finding, ...]:
-    """Return problems that prevent NGSolve and netgen from working. If the installed versions are correct, both packages are imported.
+    """Return the problems that prevent NGSolve and netgen from working. If the installed versions are correct, both packages are imported.
 
     >>> solver_findings()
     ()
@@ -32,9 +32,9 @@ def require_solver() -> None:
 
 
 def require_installed() -> None:
-    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing or has another version, without loading them.
+    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing or has another version; the packages are not loaded.
 
-    Separate processes load the packages and report errors of loading.
+    Separate processes load the packages later and report errors of loading.
 
     >>> require_installed()
     """

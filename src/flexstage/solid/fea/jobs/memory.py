@@ -1,7 +1,7 @@
-"""Memory and CPU time of a reduction, estimated from the mesh before assembly; memory is compared with the free memory of the machine.
+"""Memory and CPU time of a reduction, estimated from the mesh before assembly; the memory is compared with the machine's free memory.
 
-Degrees of freedom and matrix entries are counted exactly from the mesh. The size of the factor is empirical: measurements are 20 to 70
-bytes for each matrix entry, on hinges, levers, plates and stacks of 2,000 to 440,000 degrees of freedom at orders two to four.
+Degrees of freedom and matrix entries are counted exactly from the mesh. The size of the matrix factor is empirical: 20 to 70 bytes for each
+matrix entry were measured on hinges, levers, plates and stacks with 2,000 to 440,000 degrees of freedom at orders two to four.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from flexstage.solid.fea.meshing.fineness import Fineness
 _PROCESS = 180e6
 _PER_ELEMENT = 3500.0
 _MATRICES = 24.0
-"""Bytes for each entry: stiffness and inertia, 8 bytes of value and 4 of index each."""
+"""Bytes for each matrix entry of stiffness and inertia: 8 bytes of value and 4 bytes of index for each of the two matrices."""
 _FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 50.0, 4e5, 1.0 / 6.0
-"""Bytes of the factor for each entry of the matrix; they grow by this power of the DOFs above this number."""
+"""Bytes of the matrix factor for each matrix entry; above this number of DOFs, the bytes grow with this power of the DOFs."""
 _COPIES = 4.0
 """Simultaneous copies of the basis."""
 _LANCZOS = 40
@@ -35,7 +35,7 @@ _COARSER, _COARSEST = 1.25, 12.0
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of vertices, edges, faces and elements of a tetrahedral mesh; the whole component consists of `sides` mirror images of it."""
+    """Numbers of vertices, edges, faces and elements of a tetrahedral mesh; `sides` mirror images of the mesh form the whole component."""
 
     vertices: float
     edges: float
@@ -53,7 +53,7 @@ class Counts:
         return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
-        """Estimate the counts for elements larger by a `factor`: counts of graded meshes decrease with its square, not its cube.
+        """Estimate the counts for elements larger by a `factor`: counts of graded meshes decrease with the factor's square, not its cube.
 
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Scale the counts so that `freedoms` at `order` counts the DOFs of a mesh with a fraction `share` of elements one order higher.
+        """Scale the counts so that `freedoms` at `order` gives the DOFs of a mesh with a fraction `share` of elements of one order more.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0
@@ -86,7 +86,7 @@ def freedoms(counts: Counts, order: int) -> float:
 
 
 def entries(counts: Counts, order: int) -> float:
-    """Count the entries of the stiffness matrix: nine for every pair of basis functions with a common element.
+    """Count the entries of the stiffness matrix: nine entries for every pair of basis functions with a common element.
 
     >>> entries(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: full
     900.0
@@ -101,9 +101,9 @@ def entries(counts: Counts, order: int) -> float:
 def needed(counts: Counts, order: int, columns: int) -> float:
     """Estimate the peak memory [bytes] of a reduction to `columns` coordinates: process, mesh, matrices, their factors, and basis.
 
-    One side of a symmetric component needs one factor for each kind of motion; the number of kinds is the number of mirror images. At
-    orders two to four with modes, the error of the estimate is between -15 and +40 %. Without modes, only one factor exists at a time, and
-    the estimate is up to 70 % too high.
+    For a symmetric component, only one side is solved, with one matrix factor for each kind of motion; the number of kinds is the number of
+    mirror images. At orders two to four with modes, the error of the estimate is between -15 and +40 %. Without modes, only one matrix
+    factor exists at a time, and the estimate is up to 70 % too high.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030
@@ -116,7 +116,7 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 
 @dataclass(frozen=True)
 class ReductionWork:
-    """Computing effort of a reduction: mesh counts, number of unknowns, number of operations for factorisation, and the machine's pace.
+    """Computing effort of a reduction: mesh counts, numbers of unknowns and of factorisation operations, and the machine's pace.
 
     `pace` is the time of a small factorisation, divided by its usual time.
     """
@@ -153,7 +153,7 @@ def measure_pace() -> float:
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:
-    """Return an error for a component that needs more than `limit` bytes, with an order or a fineness that fits; `None` if it fits.
+    """Return an error for a component that needs more than `limit` bytes, else `None`; the error names an order or a fineness that fits.
 
     >>> found = refusal("lever", Counts(1416, 7258, 10580, 4737), Fineness(), 24, 0.5e9)
     >>> found.what

@@ -1,4 +1,4 @@
-"""Reduced components of a stage: each distinct one is read from the cache if possible, else computed in a separate process."""
+"""Reduced components of a stage: each distinct component is read from the cache, or computed in a separate process if it is missing."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from flexstage.solid.fea.solver.component import Component, with_yielding_ends
 from flexstage.solid.fea.solver.superelement import Superelement, hold_faces
 
 Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
-"""Components of a stage with their superelements; equal components share one."""
+"""Components of a stage with their superelements; equal components share one superelement."""
 
 AnyStored = TypeVar("AnyStored", bound=StoredJob)
 
@@ -39,8 +39,8 @@ _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 class Ways:
     """Options of the jobs: the `cache` (`None`: no cache), the receivers of `progress` and of warnings (`notice`), and the `limits`.
 
-    With a `pool`, later calls use the same processes and results. `note` receives lines of text: first the jobs and their CPU time, then
-    every result, and after an interruption the number of stored results.
+    With a `pool`, later calls use the same processes and results. The function `note` receives lines of text: first the jobs and their CPU
+    time, then every result. After an interruption, `note` receives the number of stored results.
     """
 
     cache: Cache | None = Cache()
@@ -71,10 +71,10 @@ def reduce_parts(
 
 
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
-    """Make a job for each component. Ends of its links may deform, so that an isolated unit and the unit in its stage have the same job.
+    """Make a job for each component. Ends of links may deform, so that an isolated unit and the unit in its stage have the same job.
 
-    An encased stack has no fixed-interface modes: the ceramic would bend in them without its casing, which is connected only to the end
-    faces.
+    An encased stack has no fixed-interface modes: in these modes, the ceramic would bend without its casing, which is connected only to the
+    end faces.
 
     >>> reduce_jobs((), Reduction())
     []

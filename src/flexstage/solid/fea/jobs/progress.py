@@ -1,4 +1,4 @@
-"""Stages of the computation of a solid model: the computing process reports them, and the waiting process sums them over all components."""
+"""Stages of a solid model's computation: the computing process reports the stages; the waiting process sums them over all components."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SHARES = {
     Stage.REDUCING: 0.38,
     Stage.PROJECTING: 0.10,
 }
-"""Usual shares of a component's time, at orders two and three; the mesh was made before."""
+"""Usual fractions of a component's computing time for each stage, at orders two and three, if the mesh exists already."""
 
 Report = Callable[[Stage, float], None]
 """Function called with a stage and its completed fraction."""

@@ -30,7 +30,7 @@ _TRIANGLE = 0.433
 
 
 def fewest_elements(component: Component, fineness: Fineness) -> float:
-    """Compute a lower bound of the number of elements: one for each triangle of a mesh on the lateral surface of necks and blocks.
+    """Compute a lower bound of the number of elements: one element for each triangle on the lateral surface of necks and blocks.
 
     With this bound, meshes that exceed the available memory are refused before meshing.
 
@@ -54,7 +54,7 @@ def _fewest_elements(piece: Piece, fineness: Fineness) -> float:
 
 @dataclass(frozen=True, eq=False)
 class StoredJob(Job):
-    """A job whose result is stored in the cache for `key`, in a file of the kind `stored`."""
+    """Job with a result that is stored in the cache for `key`, in a file of the kind `stored`."""
 
     key: str
 
@@ -105,7 +105,7 @@ class Reduce(ComponentJob):
 
     @property
     def phase(self) -> str:
-        """Name of the group in which the job is announced, with the element order."""
+        """Name of the group in which the job is announced; the name contains the element order."""
         return f"components at order {self.reduction.fineness.order}"
 
     @property
@@ -126,7 +126,7 @@ class Reduce(ComponentJob):
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
     def seconds(self) -> float:
-        """Return the CPU time of the reduction [s]: estimated from the measured work if known, else the usual time of a small job."""
+        """Return the CPU time [s] of the reduction, estimated from the measured work if it is known, else the usual time of a small job."""
         return super().seconds() if self.measured is None else self.measured.seconds(self.columns)
 
     def summary(self, found: Superelement) -> str:
@@ -138,7 +138,7 @@ class Reduce(ComponentJob):
         return needed(counts, self.reduction.fineness.order, self.columns)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Return an error if the job needs more memory than `limit`, with an order or fineness that fits and a leaf or notch to change."""
+        """Return an error if the job needs more memory than `limit`; it names an order or fineness that fits, and a thin leaf or notch."""
         found = refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
         forms = ((piece.name, piece.form) for piece in self.component.pieces if is_leaf(piece.form) or is_notch(piece.form))
         wide = {name: form.throat for name, form in forms if isinstance(form, Shaped)}
@@ -179,7 +179,7 @@ class Reduce(ComponentJob):
         )
 
     def work(self, call: Call) -> Superelement:
-        """Mesh and reduce the component. Before meshing and before reduction, wait for memory. Return the superelement."""
+        """Mesh and reduce the component, and return the superelement. Before meshing and before reduction, wait for free memory."""
         from flexstage.solid.fea.solver.reduce import reduce_mesh
 
         call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness) / self.sides, self.sides))

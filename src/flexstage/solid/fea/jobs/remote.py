@@ -1,4 +1,4 @@
-"""Jobs of the solid model in separate processes: as many at once as cores and memory allow, with time limits.
+"""Jobs of the solid model in separate processes with time limits; as many jobs run at once as cores and memory allow.
 
 One loop in the caller's thread starts, watches and ends the processes, so that an interruption ends all of them.
 """
@@ -32,8 +32,9 @@ _TELL_EVERY = 0.5
 class Limits:
     """Limits of the resources of jobs.
 
-    `memory` [bytes] limits all jobs together (default: the free memory), `seconds` limits each job, `mesh_seconds` each attempt at a mesh.
-    `workers` is the number of simultaneous jobs (default: one for each core, at most two).
+    `memory` [bytes] limits the memory of all jobs together (default: the free memory). `seconds` limits the time of each job, and
+    `mesh_seconds` the time of each attempt at a mesh. `workers` is the number of simultaneous jobs (default: one for each core, at most
+    two).
     """
 
     memory: float | None = None
@@ -68,7 +69,7 @@ class Pool:
             self.end(worker)
 
     def worker(self, job: Job) -> Worker:
-        """Return an idle process for a job, preferably one that did a similar job, else a new one. Raises `OSError` if none can start."""
+        """Return an idle process (preferably after a similar job) or a new process for a job. Raises `OSError` if no process can start."""
         for each in self.idle:
             if each.process.poll() is not None:
                 self.end(each)
@@ -81,7 +82,7 @@ class Pool:
         return found
 
     def end(self, worker: Worker) -> None:
-        """End a process, or remove a process that has ended."""
+        """End a process, or remove it if it has ended already."""
         self.idle = [each for each in self.idle if each is not worker]
         self._latest = {kin: each for kin, each in self._latest.items() if each is not worker}
         worker.end()

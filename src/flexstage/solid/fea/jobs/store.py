@@ -1,4 +1,4 @@
-"""Files of superelements and hinges: one line of JSON that describes the data, then the arrays as NPZ; no code."""
+"""Files of superelements and hinges: one line of JSON that describes the data, then the arrays as NPZ. The files contain no code."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _RECORDS = {record.__name__: record for record in (Superelement, Skin, HingeSoli
 def program() -> str:
     """Return the identity of the program: flexstage with a digest of its solid model's code, NGSolve, and the file format.
 
-    Therefore results that were stored by other program code are never used.
+    Stored results of another program identity are therefore never used.
 
     >>> program().endswith(f"with NGSolve {SOLVER_VERSION}, format {FORMAT}")
     True
@@ -57,7 +57,7 @@ def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
 
 
 def from_bytes(data: bytes, key: str) -> Any:
-    """Return the value stored by `to_bytes`, or the reason as text if the file is damaged, of another version, or of other content.
+    """Return the value stored by `to_bytes`. If the data are damaged, of another version or for another key, return the reason as text.
 
     >>> from_bytes(b"nonsense", "key")
     'it is damaged: unknown header'

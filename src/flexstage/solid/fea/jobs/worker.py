@@ -1,4 +1,4 @@
-"""Jobs of the solid model, run in a separate process: a crash or hang of CAD and mesher ends only that process."""
+"""Jobs of the solid model that run in a separate process: a crash or hang of CAD or mesher affects only that process."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexstage.solid.fea.jobs.memory import Counts
 from flexstage.solid.fea.jobs.progress import Report, Stage, silent
 
 _SLACK, _SHARE = 5e8, 1.2
-"""Memory of libraries beyond a job's own [bytes], and the tolerance on its planned memory."""
+"""Memory [bytes] of libraries in addition to a job's planned memory, and the tolerance on the planned memory."""
 USUAL_SECONDS = 2.0
 """Usual duration of a small job: a process that loads its libraries, draws and meshes."""
 _PATIENCE = 60.0
@@ -26,7 +26,7 @@ _PATIENCE = 60.0
 class Call:
     """Environment of a job: the functions `report` for progress and `ask` for memory, and the number of the first `attempt` at a mesh.
 
-    `ask` waits until enough memory for a mesh with these counts is available.
+    `ask` waits until enough memory for a mesh with the given counts is available.
     """
 
     report: Report = silent
@@ -38,7 +38,7 @@ class Job(ABC):
     """Work for a separate process; the job and its result can be pickled."""
 
     attempts: int = 1
-    """Number of attempts at a mesh: if one crashes the process, the next follows."""
+    """Number of attempts at a mesh: if an attempt crashes the process, the next attempt follows."""
 
     @property
     @abstractmethod
@@ -52,7 +52,7 @@ class Job(ABC):
 
     @property
     def kin(self) -> str:
-        """Key shared by similar jobs, which one process completes faster in succession; empty without similar jobs."""
+        """Key of similar jobs, which are faster in succession in one process; empty if there are no similar jobs."""
         return ""
 
     def seconds(self) -> float:
@@ -64,7 +64,7 @@ class Job(ABC):
         """Compute the result."""
 
     def needed(self, _counts: Counts) -> float:
-        """Return the memory that a mesh with these counts needs [bytes]."""
+        """Return the memory [bytes] that the job needs for a mesh with the given counts."""
         return 0.0
 
     def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
@@ -73,7 +73,7 @@ class Job(ABC):
 
 
 def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> Any:
-    """Run a job with limits of memory [bytes] and time [s]. Report its stages and mesh counts, and wait for memory for each mesh.
+    """Run a job with limits of memory [bytes] and time [s]. Report the job's stages and mesh counts, and wait for memory for each mesh.
 
     Raises a `DesignError` with the remedy if the solver does not load.
     """

@@ -1,4 +1,4 @@
-"""A plain bar: a manual test case for every step of the solid model."""
+"""A plain bar: a test case with known results for every step of the solid model."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.spatial.frame import Frame, identity
 
 
 def bar() -> Component:
-    """Make a square bar along x, 100 x 10 x 10 mm, with E = 100 GPa, nu = 0 and 1000 kg/m^3, fixed at x = 0 and joined at x = 100 mm.
+    """Make a square bar along x: 100 x 10 x 10 mm, E = 100 GPa, nu = 0, density 1000 kg/m^3, fixed at x = 0, with a joint at x = 100 mm.
 
     The bar's axial stiffness is E A / L = 100 N/um, and its mass is 10 g.
 

@@ -11,7 +11,7 @@ from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 
 _MOST = 0.8
-"""Largest ratio of successive changes used for convergence."""
+"""Largest ratio of successive changes that the estimate uses."""
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,8 @@ class Accuracy(CheckedFields):
     """Requirements of an adaptive solve.
 
     `error` is the required relative error, `freedoms` the maximum number of DOFs. On the first mesh, the element order rises from the first
-    to the second of `orders`. The following meshes have the second order, and element sizes are multiplied by `shrink` from mesh to mesh.
-    `meshes` is the maximum number of meshes.
+    to the second of `orders`. The following meshes have the second order; from each mesh to the next, the element sizes are multiplied by
+    `shrink`. `meshes` is the maximum number of meshes.
     """
 
     error: float = 0.01
@@ -41,7 +41,7 @@ def change(first: Array, second: Array) -> float:
 
 
 def remaining(changes: Iterable[float]) -> float:
-    """Estimate the error of the last of several results from the `changes` d_1, ..., d_n between them: max(1, r / (1 - r)) d_n.
+    """Estimate the error of the last of several results from the `changes` d_1, ..., d_n between the results: max(1, r / (1 - r)) d_n.
 
     Here r is the ratio d_n / d_(n-1) of the last two changes, at most 0.8. For slow convergence, the estimate is the sum of a geometric
     series; for fast convergence, it is the last change, an overestimate. The estimate is not a bound; for a single result, it is infinite.

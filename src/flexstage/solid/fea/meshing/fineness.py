@@ -18,32 +18,33 @@ from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, span, thinnest
 
 ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
-"""Variations of the mesh if the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
+"""Variations of the mesh that are tried if the mesher fails: factors on all sizes, on grading and on segments per radius of curvature."""
 
 
 _NOTCH = 5.0 / 3.0
-"""Size of elements in notches, of one order more, relative to those on the faces of other hinges."""
+"""Size of elements in notches, which have one order more, divided by the size of elements on the faces of other hinges."""
 _STRUT = 0.4
-"""Share for straight necks: elements as wide as thick, at low cost."""
+"""Factor on the element size for straight necks: elements as wide as thick, at low cost."""
 THIN = 35.0
-"""A leaf or notch whose width and length exceed this multiple of its thickness is thin: its elements are flat, of one order more."""
+"""A leaf or notch whose width and length exceed this multiple of its thickness is thin: its elements are flat and have one order more."""
 _FLAT = 2.0 / 9.0
-"""Size of elements in thin parts over the smaller of width and length: strains vary slowly along the faces."""
+"""Size of elements in thin parts, divided by the smaller of width and length: strains vary slowly along the faces."""
 _MIDDLE, _SMOOTH = 0.7, 0.25
 """Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; in thin
 notches over the geometric mean of radius and thickness."""
 _MOST = 3e5
 """Largest number of elements in one link."""
 WARPS = 12
-"""Number of linear and quadratic motions of an interface face, without rigid ones."""
+"""Number of linear and quadratic motions of an interface face, without the rigid motions."""
 
 
 @dataclass(frozen=True)
 class Fineness(CheckedFields):
-    """Element sizes and polynomial `order` of displacements and curved geometry; elements in notches and thin leaves have one order more.
+    """Element sizes, and polynomial `order` of the elements' displacements and curved shapes.
 
-    On the faces of a link, the element size is `neck` times the smallest thickness; on the faces of a body, it is `block` times the
-    smallest dimension. `grading` is the growth of the element size away from small elements (0.1 slow to 0.9 fast).
+    In notches and thin leaves, the order is higher by one. On the faces of a link, the element size is `neck` times the smallest thickness;
+    on the faces of a body, it is `block` times the smallest dimension. `grading` is the growth of the element size away from small elements
+    (from 0.1, slow, to 0.9, fast).
     """
 
     neck: float = 1.5
@@ -53,7 +54,7 @@ class Fineness(CheckedFields):
 
 
 class Hold(Enum):
-    """How faces between elastic bodies may move: by a twist plus linear and quadratic warps, or freely with a prescribed mean twist."""
+    """Motion of faces between elastic bodies: a twist plus linear and quadratic warps, or free motion with a prescribed mean twist."""
 
     RIGID = "rigid"
     AVERAGED = "averaged"
@@ -61,11 +62,12 @@ class Hold(Enum):
 
 @dataclass(frozen=True)
 class Reduction(CheckedFields):
-    """Options of a component's reduction: mesh and element order, number of fixed-interface modes, constraint of its interface faces.
+    """Options of a component's reduction: mesh, element order, number of fixed-interface modes, and constraint of the interface faces.
 
-    With `residual`, the basis includes the static responses, computed with fixed faces, to the inertia forces of the faces' motions. These
-    responses replace the omitted modes to first order in frequency squared. Components whose content digest is in `raised` have elements
-    one order higher than the others. With `static`, the `raised` components have no modes, because static results do not need them.
+    With `residual`, the basis also includes static displacements. They are computed with fixed interface faces, under the inertia forces
+    that the motions of these faces cause. The static displacements replace the omitted modes to first order in frequency squared.
+    Components with a content digest in `raised` have elements one order higher than the other components. With `static`, the `raised`
+    components have no modes, because static results do not need them.
     """
 
     fineness: Fineness = Fineness()
@@ -98,7 +100,7 @@ def is_leaf(form: object) -> bool:
 
 
 def is_notch(form: object) -> bool:
-    """Return whether a form is a hinge with arcs that is neither axisymmetric nor slender; the strain in it varies smoothly.
+    """Return whether a form is a hinge with arcs that is neither axisymmetric nor slender; strain varies smoothly in this hinge.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_notch(Leaf("steel", 0.01, 1e-3, 5e-3))

@@ -35,9 +35,9 @@ from flexstage.solid.fea.meshing.straighten import straighten
 from flexstage.solid.fea.solver.component import Component
 
 _CURVATURE = 1.5
-"""Segments per radius of curved faces."""
+"""Number of segments per radius of curvature on curved faces."""
 _NECK = 0.5
-"""Share of a link's length, about its middle, with curved elements."""
+"""Fraction of a link's length, about its middle, over which elements are curved."""
 _CORE, _AWAY = 1.0 / 6.0, 0.1
 """Elements within a round neck with an arc, on circles of half its radius about its axis. Size in the middle over that on its faces,
 and its growth with the distance. From the surface alone the mesher would make flat elements, twice as wide."""
@@ -52,13 +52,13 @@ _ROOT = 2.0 / 15.0
 _REACH = 1.6
 """Extent of the fine middle plane of a notch on both sides, in geometric means of radius and thickness."""
 _HELD = 0.9
-"""Share of its length within which a round neck's inside is graded."""
+"""Fraction of a round neck's length over which the inside of the neck is graded."""
 _PRINT = 1.0 / 3.0
 """Elements under another component's end face over the root of its area, for a neck of one. A small face needs a fine root."""
 _WITHIN = 1e-6
-"""Largest distance between a face's centre and the bounding box of its piece [m]."""
+"""Largest distance [m] between the centre of a face and the bounding box of the face's piece."""
 _AT_HAND = 8
-"""Drawings and meshes cached for the next order."""
+"""Number of drawings and meshes that are cached for the next order."""
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,11 @@ class PieceMesh:
 def mesh_component(
     component: Component, fineness: Fineness, report: Report = silent, first: int = 0, *, by_symmetry: bool = False
 ) -> PieceMesh:
-    """Draw and mesh a component; with `by_symmetry`, only the positive side of a symmetric component.
+    """Draw and mesh a component; if `by_symmetry`, mesh only the positive side of a symmetric component.
 
-    Elements near the ends of arcs get straight sides if curving would invert them. If the mesher fails, or an element of a neck is
-    inverted, a few other sizes and gradings are tried. `first` is the number of the attempt to start with, after a crash of earlier
-    attempts. Drawings and meshes are cached; another order only requires curving the cached mesh again. Raises `DesignError` if meshing
+    Elements near the ends of arcs get straight sides if curved sides would invert the elements. If the mesher fails, or an element of a
+    neck is inverted, a few other sizes and gradings are tried. `first` is the number of the first attempt, if earlier attempts crashed.
+    Drawings and meshes are cached: for another order, only the sides of the cached mesh are curved again. Raises `DesignError` if meshing
     fails in all attempts.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
@@ -153,9 +153,9 @@ def _curve(straight: ngsolve.Mesh, order: int) -> ngsolve.Mesh:
 
 
 def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
-    """Generate a mesh [mm] of a drawing with these mesher options; if this fails, return the reason.
+    """Generate a mesh [mm] of a drawing with mesher options `sizes`; if meshing fails, return the reason.
 
-    One thread is used: with several, meshes may differ from run to run, and threads mostly wait for one another.
+    The mesher uses one thread: with several threads, meshes may differ from run to run, and threads mostly wait for one another.
 
     >>> generate_mesh(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
     True
@@ -304,7 +304,7 @@ def _refuse_mesh(component: Component, reason: str) -> Exception:
     return refuse(
         component.name,
         f"no mesh could be made ({reason}); its thinnest piece is {thin.name}, {thinnest(thin.form) * MILLIMETRES:.4g} mm thick",
-        "Use a finer mesh, or remove steps and slivers much smaller than the neck between outlines",
+        "Use a finer mesh, or remove steps and slivers between outlines that are much smaller than the neck",
     )
 
 
@@ -323,7 +323,7 @@ def centroids(mesh: ngsolve.Mesh) -> Array:
 
 
 def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
-    """Return for each point the piece (index) with the nearest bounding box. At equal distance, a link has priority over a body.
+    """Return for each point the index of the piece with the nearest bounding box. At equal distance, a link has priority over a body.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()

@@ -1,7 +1,8 @@
-"""Straightening: elements that curved sides would invert get straight sides, where this is harmless.
+"""Straightening: elements that would be inverted by curved sides get straight sides where straight sides are harmless.
 
-A concave arc bulges into its elements by h^2 / (8 R), with element size h, and inverts flatter elements. They are few, all near the ends of
-arcs, where sections are thick: smaller elements everywhere would cost far more than these straight sides.
+A concave arc of radius R bulges into its elements by h^2 / (8 R), with element size h, and inverts flatter elements. The inverted elements
+are few, all near the ends of arcs, where sections are thick. Smaller elements everywhere would need far more computing time than these
+straight sides.
 """
 
 from __future__ import annotations
@@ -12,16 +13,16 @@ import numpy as np
 from flexstage.base.number import Array
 
 _FLAT = 0.05
-"""Smallest ratio of the lowest to the highest Jacobian of an element."""
+"""Smallest permitted ratio of the lowest to the highest Jacobian determinant of an element."""
 _ORDER = 4
 
 
 def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
     """Give folded elements of a curved mesh straight sides. Return `None`, or the reason if straightening fails.
 
-    Elements of `kept` (mask) keep their curved sides; if one of them is inverted, the reason contains the lowest Jacobian determinant. If
-    an element was folded, the mesh is reset to order one, and a deformation represents the remaining curvature; call `UnsetDeformation`
-    before you curve the mesh again.
+    Elements of `kept` (mask) keep their curved sides; if one of these elements is inverted, the reason contains the lowest Jacobian
+    determinant. If an element was folded, the mesh is reset to order one, and a deformation of the mesh represents the remaining curvature.
+    Call `UnsetDeformation` before you curve the mesh again.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

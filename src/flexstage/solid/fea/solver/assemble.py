@@ -1,4 +1,4 @@
-"""Assembly: superelements, rigid bodies and casings as one linear model with the inputs and outputs of every elastic model."""
+"""Assembly of superelements, rigid bodies and casings to one linear model with the inputs and outputs of every elastic model."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _SINGULAR = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A component with its superelement and the operator (n, N) from the model's coordinates to its own."""
+    """A component with its superelement and the operator (n, N) that maps the N model coordinates to its n own coordinates."""
 
     component: Component
     element: Superelement

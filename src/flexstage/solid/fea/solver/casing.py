@@ -1,4 +1,4 @@
-"""Casings of encapsulated stacks: sleeves that slide along the axis provide the bending stiffness that exceeds the ceramic's."""
+"""Casings of encapsulated stacks: sleeves that slide along the axis and provide the bending stiffness in excess of the ceramic's."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def is_encased(form: object) -> bool:
 def casing(link: PlacedLink) -> Array | None:
     """Return the stiffness (6, 6) of a stack's casing about its centre: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
 
-    B is the specified bending rigidity minus E I of the ceramic; L is the length and nu the Poisson's ratio of the stack. Along the axis
-    the stiffness is zero, because the casing slides. The axes are those of the stack. Without a casing, the result is `None`. Raises
-    `DesignError` if the specified rigidity is below that of the ceramic.
+    B is the specified bending rigidity minus E I of the ceramic; L is the length and nu the Poisson's ratio of the stack. The stiffness
+    along the axis is zero, because the casing slides. The axes are those of the stack. The result is `None` if the stack has no casing.
+    Raises `DesignError` if the specified rigidity is below that of the ceramic.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

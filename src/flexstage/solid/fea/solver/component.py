@@ -1,9 +1,9 @@
 """Components: a stage cut at interfaces of units with other bodies, at the ends of stacks and at rigid bodies.
 
-A body with outlines is elastic, one without is rigid. A component is a set of touching pieces of one instance (or of the stage): links and
-elastic bodies. Every other joint of a link with a body is an interface: a flat end face, which remains plane at rigid bodies and stacks.
-Stacks are separate, between rigid end caps. Components are drawn in their unit's frame (a single link in its own), so that equal ones are
-reduced once.
+A body with outlines is elastic; a body without outlines is rigid. A component is a set of touching pieces of one instance (or of the
+stage): links and elastic bodies. Every joint of a link with a body outside its component is an interface: a flat end face, which remains
+plane at rigid bodies and stacks. Stacks are separate components between rigid end caps. Components are drawn in their unit's frame (a
+single link in its own frame), so that equal components are reduced once.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from flexstage.spatial.frame import Frame, identity
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """End face of a link at a body: name (`B1/front:platform`), frame with x out of the end face, area [m^2]."""
+    """End face of a link at a body: its name (`B1/front:platform`), its frame with x out of the end face, and its area [m^2]."""
 
     name: str
     link: str
@@ -40,8 +40,8 @@ class Joint:
 class Interface:
     """A joint at the boundary of a component: the end face of one of its links, or the imprint (`footprint`) of another component's link.
 
-    A joint `yields` if both sides are elastic: its face then deforms equally on both sides. A face on a rigid body or on an end cap of a
-    stack stays plane.
+    A joint `yields` if the solids on both sides are elastic: the face of the joint then deforms equally on both sides. A face on a rigid
+    body or on an end cap of a stack stays plane.
     """
 
     joint: Joint
@@ -52,7 +52,7 @@ class Interface:
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """One solid in its own axes: `pieces`, the `interfaces` with its neighbours, the joints `fixed` to the ground.
+    """One solid in its own axes: its `pieces`, its `interfaces` with neighbouring components, and its joints `fixed` to the ground.
 
     `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is the component's frame in the stage. `seats`
     are the ends of parts without a shape that attach to the component.
@@ -82,7 +82,7 @@ class _Graph:
 
 
 class Cut(Enum):
-    """Where a stage is cut into components: at units and stacks, or nowhere. Stacks always have rigid end caps."""
+    """Places where a stage is cut into components: at units and stacks, or nowhere. Stacks always have rigid end caps."""
 
     UNITS = "units"
     NONE = "none"
@@ -126,8 +126,8 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
 def with_yielding_ends(component: Component) -> Component:
     """Return the same component, but with link ends that may deform even on rigid bodies.
 
-    Then an isolated unit, whose output is rigid, has the same components as the unit in its stage, where its output is an elastic platform.
-    With zero warps, the returned component behaves as the original.
+    An isolated unit with a rigid output then has the same components as the unit in its stage with an elastic platform at the output. With
+    zero warps, the returned component behaves like the original component.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields

@@ -18,10 +18,10 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """Elastic forces and momenta of a group of elements in k motions, on the group's degrees of freedom `rows` (m,).
+    """Elastic forces and momenta of a group of elements in k motions, at the group's m degrees of freedom, the `rows` (m,).
 
     `strained` (m, k) are the motions minus their rigid part, and `forces` (m, k) the elastic forces due to these motions. `momenta` (m, k)
-    belong to the complete `motions` (m, k).
+    are the momenta of the complete `motions` (m, k) as velocities.
     """
 
     name: str
@@ -61,7 +61,7 @@ def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assemble
 
 
 def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iterator[Contribution]:
-    """Yield the contributions of groups of elements in the motions `basis` (n, k), in any sequence.
+    """Yield the contributions of groups of elements in the motions `basis` (n, k); the sequence of the groups is arbitrary.
 
     Rigid motions of a group are subtracted before elastic forces are computed; otherwise rounding errors would exceed the forces of a thin
     leaf.

@@ -1,4 +1,4 @@
-"""Elasticity on a mesh: displacements in metres on a mesh in millimetres; vectors of degrees of freedom are numpy arrays."""
+"""Elasticity on a mesh: displacements are in metres, the mesh is in millimetres, and vectors of degrees of freedom are numpy arrays."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ class Field:
 
     @property
     def whole_size(self) -> int:
-        """Number of DOFs of the whole component, even if the mesh is one side of it; DOFs on a mirror are counted once."""
+        """Number of DOFs of the whole component, even if the mesh is only one side of the component; DOFs on a mirror are counted once."""
         mirrors = self.meshed.mirrors
         own = sum((nodes_on(self, MIRRORS[axis]).astype(np.int64) for axis in mirrors.axes), np.zeros(self.size // 3, dtype=np.int64))
         return 3 * int(np.sum(mirrors.copies >> own))
 
     @cached_property
     def members(self) -> tuple[Array, Array]:
-        """All pairs of an element and one of its basis functions, sorted by element: functions (m,) of one component, elements (m,)."""
+        """All m pairs of a basis function and its element, sorted by element: functions (m,) of one displacement component, elements."""
         scalar, count = self.space.components[0], self.meshed.mesh.ne
         nodes = [np.array(scalar.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)), dtype=np.int64) for number in range(count)]
         return np.concatenate(nodes), np.repeat(np.arange(count), [len(each) for each in nodes])
@@ -71,7 +71,7 @@ class Field:
 
     @cached_property
     def linear(self) -> tuple[Array, Array]:
-        """Coefficients that represent the constant 1 (n / 3,) and x, y and z [m] (n / 3, 3) in the basis of one component."""
+        """Coefficients that represent 1 (n / 3,) and x, y, z [m] (n / 3, 3) in the basis functions of one displacement component."""
         function, place = ngsolve.GridFunction(self.space.components[0]), np.empty((self.size // 3, 3))
         for axis, coordinate in enumerate(_coordinates()):
             function.Set(coordinate, dual=False)
@@ -165,7 +165,7 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
     """Build the elastic form: the integral of stress(u) : strain(v) [N/m] over some elements (mask) or all, for two motions u and v.
 
-    A form that is not assembled can only be used with `apply_form`.
+    A form that is not assembled can be used only with `apply_form`.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -183,7 +183,7 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """The integral of rho u . v dV [kg] for motions u and v; the matrix of each component is the sum of `scalar` (n / 3, n / 3)."""
+    """The integral of rho u . v dV [kg] for motions u and v; each displacement component's matrix (n / 3, n / 3) is the sum of `scalar`."""
 
     scalar: tuple[Any, ...]
 
@@ -278,7 +278,7 @@ def stroke_force(space: Field, frame: Frame, length: float) -> Array:
 
 
 def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
-    """Return the six rigid motions (n, 6) about a frame's origin, in the frame's axes; if `faces` is specified, only on these faces.
+    """Return the six rigid motions (n, 6) about a frame's origin, in the frame's axes, on all elements or only on the specified `faces`.
 
     The motions are translations of 1 m and rotations of 1 rad.
 
@@ -300,7 +300,7 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 
 
 def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array:
-    """Return all twelve non-rigid motions (n, 12) that are linear or quadratic over a face; the face is normal to a frame's x axis.
+    """Return the twelve non-rigid motions (n, 12) that are linear or quadratic over a face, which is normal to a frame's x axis.
 
     Here y and z are divided by `size` [m]. In the frame's axes, the first three motions are the strains along y and z, and the shear in the
     y-z plane. In the other nine motions, u_x, u_y or u_z is y^2, y z or z^2.
@@ -324,7 +324,7 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
 
 
 def warp_kinds(mirrors: Mirrors, frame: Frame) -> Array:
-    """Return the kinds (12,) of the motions of `warping_motion`: whether each is odd or even across the `mirrors` (see `Mirrors`).
+    """Return the kinds (12,) of the motions of `warping_motion`: whether each motion is odd or even across each mirror (see `Mirrors`).
 
     >>> warp_kinds(Mirrors((1,)), Frame(np.eye(3), np.zeros(3))).tolist()
     [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]
@@ -388,7 +388,7 @@ def nodes_on(space: Field, face: str) -> Array:
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
-    """Compute rows (6, n) that map a motion u to a face's mean twist in a frame.
+    """Compute the rows (6, n) that map a motion u to the mean twist of a face in a frame.
 
     The mean twist is G^-1 int R^T u dS with G = int R^T R dS over the face; the columns of R are the six rigid motions.
 
@@ -411,10 +411,11 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 
 
 def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
-    """Compute rows (6, n) that give the mean twist of the surface `faces` (mask of elements) about a point, in the field's axes.
+    """Compute the rows (6, n) that map a motion to the mean twist of surface elements `faces` (mask) about a point, in the field's axes.
 
-    The mean has the weight exp(-(d^2 - d0^2) / reach^2), where d is the distance from the point and d0 the smallest distance. On a flat
-    face, the weight is a bell curve around the point's perpendicular projection; on a sphere about the point, it is uniform.
+    The mean has the weight exp(-(d^2 - d0^2) / reach^2), where d is the distance of a surface point from the given point, and d0 is the
+    smallest distance. On a flat face, the weight is a bell curve around the point's perpendicular projection; on a sphere about the point,
+    it is uniform.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -443,7 +444,7 @@ def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array
 
 
 Forms = Sequence[ngsolve.BilinearForm]
-"""Assembled forms, each over some elements; they represent their sum."""
+"""Assembled forms, each over some elements; the list represents the sum of the forms."""
 
 
 def times(forms: Forms, vectors: Array) -> Array:
@@ -489,7 +490,7 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
 
 
 def held_at_mirrors(space: Field, kind: int) -> Array:
-    """Return a mask (n,) of DOFs at a mesh's mirrors that are zero in motions of a kind: normal DOFs if it is even, tangential DOFs if odd.
+    """Return a mask (n,) of DOFs at mirrors that are zero in motions of a kind: normal DOFs for even motions, tangential DOFs for odd ones.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -516,7 +517,7 @@ class Columns:
 
     @staticmethod
     def of(values: Array) -> Columns:
-        """Make columns for a mesh without mirrors, where all motions are of one kind."""
+        """Make columns for a mesh without mirrors, in which all motions are of one kind."""
         return Columns(values, np.zeros(values.shape[1], dtype=np.int64))
 
     def kind(self, kind: int) -> Array:
@@ -542,7 +543,7 @@ KindSolver = Callable[[Columns], Array]
 
 
 def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
-    """Return a solver for forces of all kinds; its matrix is the sum of the forms' matrices. The solver keeps one factor for each kind.
+    """Return a solver for forces of all kinds; its matrix is the sum of the forms' matrices. The solver keeps one matrix factor per kind.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -556,7 +557,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
 
 
 def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
-    """Solve for the displacements due to forces, with the sum of the forms' matrices, one kind after another; no factor is kept.
+    """Solve for the displacements due to forces, with the sum of the forms' matrices, one kind after another; keep no matrix factor.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -1,8 +1,9 @@
-"""Direct solution of finite-element equations by fronts: nested dissection of the elements, dense Cholesky factors at each cut.
+"""Direct solution of finite-element equations by fronts: nested dissection of the elements, and a dense Cholesky factor at each cut.
 
-High-order elements result in large dense fronts, and hinges between blocks in small cuts. LAPACK therefore does nearly all of the work,
-also for many right-hand sides at once. The method is that of Duff and Reid (ACM Trans. Math. Softw. 9, 302, 1983), the order that of George
-(SIAM J. Numer. Anal. 10, 345, 1973). A node has three degrees of freedom: the three components of one scalar basis function.
+High-order elements result in large dense fronts; hinges between blocks result in small cuts. LAPACK therefore does nearly all of the work,
+also for many right-hand sides at once. The method is that of Duff and Reid (ACM Trans. Math. Softw. 9, 302, 1983), and the elimination
+order is that of George (SIAM J. Numer. Anal. 10, 345, 1973). A node has three degrees of freedom: the three components of one scalar basis
+function.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ _SMALL = 40
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Input of `dissect`: numbers of the `faces` (n, 4) and centres `places` (n, 3) of n elements; all m pairs of a node and its element.
+    """Input of `dissect`: numbers of the `faces` (n, 4) and centres `places` (n, 3) of n elements, and all m pairs of node and element.
 
     `count` is the number of nodes.
     """
@@ -89,19 +90,19 @@ class _Factor:
 
 @dataclass(frozen=True, eq=False)
 class Fronts:
-    """The elimination order: the free nodes in the sequence of elimination, and the fronts, with children before their parent."""
+    """The elimination order: the free nodes in the sequence of elimination, and the fronts, in which children precede their parent."""
 
     nodes: Array
     fronts: tuple[_Front, ...]
 
     @property
     def size(self) -> int:
-        """Number of entries of the factor."""
+        """Number of entries of the matrix factor."""
         return sum(9 * (front.last - front.first) * (front.last - front.first + len(front.beyond)) for front in self.fronts)
 
     @property
     def operations(self) -> float:
-        """Number of operations: the sum of n^3 / 3 + n^2 m + n m^2 over all fronts, with n eliminated DOFs, coupled to m others."""
+        """Number of operations: the sum of n^3 / 3 + n^2 m + n m^2 over all fronts, with n eliminated DOFs coupled to m other DOFs."""
         pairs = ((3.0 * (front.last - front.first), 3.0 * len(front.beyond)) for front in self.fronts)
         return sum(own * (own * own / 3.0 + own * beyond + beyond * beyond) for own, beyond in pairs)
 
@@ -207,7 +208,7 @@ def _owners(grid: Grid, leaf: Array, spans: tuple[_Span, ...]) -> tuple[Array, A
 
 @dataclass(frozen=True, eq=False)
 class Factorised:
-    """A matrix factorised front by front; `order` contains the free nodes, `held` (m, 3) marks their fixed degrees of freedom."""
+    """A matrix factorised front by front; `order` contains the m free nodes, and `held` (m, 3) marks the fixed DOFs of these nodes."""
 
     order: Fronts
     held: Array
@@ -239,8 +240,8 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Ite
     Matrices are `scipy.sparse.csr_array` with both triangles. The DOFs of all nodes along x come first, then those along y, then along z.
     For each pair of coupled nodes, all nine entries are stored. Each row of `held` (k, n) is the mask of one set of fixed DOFs, which are
     decoupled from all other DOFs. All sets share the factor of a front if no DOF of the front or its descendants is held. The sets are
-    factorised one after another, when needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is
-    not positive definite.
+    factorised one after another, when they are needed; only results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a
+    front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
     parts, met = [_Entries.of(order, matrix) for matrix in matrices], np.any(by_node, axis=(0, 2))

@@ -1,7 +1,7 @@
-"""Constrained interfaces: faces with rigid and quadratic motions, or with a prescribed mean motion and free warping (averaged).
+"""Constrained interfaces: faces with rigid, linear and quadratic motions, or with prescribed mean motion and free warping (averaged).
 
-A constrained face is stiffer than the joint, an averaged face softer: the two bracket the error of the cut. The end caps of
-stacks and faces on rigid bodies always remain plane.
+A constrained face is stiffer than the real joint, and an averaged face is softer. The results with both kinds of faces bracket the error of
+the cut. The end caps of stacks and faces on rigid bodies always remain plane.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions due to unit twists of m `faces` (n, 6 m), due to unit `warps` (n, w), and due to loads with fixed faces (`within`).
+    """Motions due to unit twists of m `faces` (n, 6 m), due to unit `warps` (n, w), and due to loads while faces are fixed (`within`).
 
     `solve` computes motions due to other forces.
     """
@@ -52,7 +52,7 @@ class Support:
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
-    """Return whether the complete motion of an interface is constrained, not only its mean: according to `hold`, or by a stack's end cap.
+    """Return whether the complete motion of an interface is constrained (by `hold` or by a stack's end cap), not only the mean motion.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
@@ -65,8 +65,8 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
 def support(component: Component, space: Field, reduction: Reduction, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
     """Constrain a component's interfaces. `elastic` is the stiffness, `mass` the inertia.
 
-    Rigid faces and faces on the ground are fixed in `space`. Responses to `loads` within the component use the same factorisation, which is
-    kept only if it is needed later.
+    Rigid faces and faces on the ground are fixed in `space`. The responses to `loads` within the component use the same matrix
+    factorisation, which is kept only if it is needed later.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field, inertia, stiffness

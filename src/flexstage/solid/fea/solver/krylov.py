@@ -1,4 +1,4 @@
-"""The lowest modes of large models by block Lanczos iteration: one factor solves many vectors in the time of a few."""
+"""The lowest modes of large models by block Lanczos iteration: with one matrix factor, many vectors are solved in the time of a few."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 
 _BLOCK = 12
 _EIGENVALUES = 1e-9
-"""Relative change of the eigenvalues between blocks for convergence: their errors are smaller."""
+"""Largest relative change of the eigenvalues between blocks at convergence; the errors of the eigenvalues are smaller."""
 _DEPENDENT = 1e-14
 _MOST = 20
 """Largest number of blocks."""
@@ -31,7 +31,8 @@ class Pencil:
 def lowest_modes(pencils: Sequence[Pencil], count: int) -> list[Array]:
     """Find the `count` lowest modes among all pencils by block Lanczos with full orthogonalisation; return modes (size, k) for each pencil.
 
-    There are fewer modes if the rank of the mass matrices is below `count`. Golub and Underwood, in Mathematical Software III (1977), 361.
+    There are fewer modes if the total rank of the mass matrices is below `count`. Reference: Golub and Underwood, in Mathematical Software
+    III (1977), 361.
 
     >>> stiffness = np.arange(1.0, 41.0)[:, None]
     >>> pencils = [Pencil(lambda x: x, lambda x: x / stiffness, 40), Pencil(lambda x: x, lambda x: x / (0.5 + stiffness), 40)]

@@ -1,8 +1,8 @@
 """Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment modes for the loads within.
 
 The displacement is the sum of static responses to rigid motions and warps of the interface faces, fixed-interface modes, and static
-responses, with faces fixed, to a wrench on each body and to each stroke. For these loads, statics is that of the full model, for any number
-of modes.
+responses, with faces fixed, to a wrench on each body and to each stroke. For these loads, the static response is equal to that of the full
+model, for any number of modes.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from flexstage.spatial.frame import Frame, identity, transport
 
 _DEPENDENT = 1e-13
 _REACH = 0.5
-"""Extent of a body's surface around the end of a part without a shape, divided by the smallest dimension of its solid there."""
+"""Extent of a body's surface around the end of a part without a shape, divided by the smallest dimension of the body's solid there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +83,9 @@ def reduce_mesh(
 ) -> Superelement:
     """Assemble and reduce a meshed component, with progress reports.
 
-    If `springs` (6 m, 6 m) connect the m interfaces, the modes are computed with interfaces on these springs instead of fixed interfaces.
-    If a whole stage is one component, these modes are exact. With `springs`, the mesh is large. Therefore no static shapes are computed for
-    loads on bodies other than the platform, and static responses to these loads are approximate.
+    If `springs` (6 m, 6 m) connect the m interfaces, the modes are computed with the interfaces on these springs instead of fixed. If a
+    whole stage is one component, these modes are exact. With `springs`, the mesh is large. Therefore static shapes are computed only for
+    loads on the platform; static responses to loads on other bodies are approximate.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -17,23 +17,23 @@ from flexstage.solid.fea.solver.superelement import Skin
 
 _VOIGT = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 _FROM_VOIGT = [0, 1, 2, 5, 3, 4]
-"""Stresses as xx, yy, zz, xy, yz, zx, from the order of a medium's law."""
+"""Order of stresses xx, yy, zz, xy, yz, zx, as positions in the order of a medium's law."""
 _AT_ONCE = 32
-"""Motions computed at once."""
+"""Number of motions that are computed at once."""
 
 _WITHIN = [(2 / 3, 1 / 6), (1 / 6, 2 / 3), (1 / 6, 1 / 6)]
-"""Points within a triangle, in the order of its corners."""
+"""Points within a triangle, in the order of the triangle's corners."""
 _CONTINUED = 2.0 * np.eye(3) - np.full((3, 3), 1.0 / 3.0)
-"""Linear extrapolation from the points within to the corners: 5/3 of the own value less 1/3 of the others."""
+"""Linear extrapolation from the points within to the corners: 5/3 of the nearest point's value minus 1/3 of the other values."""
 _EVEN = frozenset((order + 1) * (order + 2) * (order + 3) // 6 for order in range(1, 12))
-"""Numbers of functions of elements with one order."""
+"""Numbers of basis functions of elements in which all functions have one order."""
 _LEAST_WEIGHT = 1e-12
 _NEAR = 1e-9
-"""Relative to the drawing's size: tolerance for points in a plane."""
+"""Tolerance for points in a plane, divided by the drawing's size."""
 
 
 def skin(space: Field, motions: Columns) -> Skin:
-    """Build the surface of a field's mesh, with displacement and stress in `motions`. A mesh with mirrors gives the surface of the whole.
+    """Build the surface of a field's mesh, with displacement and stress in `motions`. If the mesh has mirrors, return the whole surface.
 
     Stresses are evaluated within each triangle and extrapolated to its corners. The stress at a vertex is the mean over its triangles,
     weighted by the Jacobian, because strains of a nearly folded element are meaningless.

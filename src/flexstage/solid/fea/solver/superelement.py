@@ -28,15 +28,16 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A reduced component in its own axes. Its n coordinates are interface twists, `warps` and internal coordinates.
+    """A reduced component in its own axes. Its n coordinates are the interface twists, the `warps` and the internal coordinates.
 
-    The twist of an interface is at the interface's own point. `stiffness` and `inertia` have a matrix (n, n) for each link and body. For
-    each body, `bodies` (6, n) map the coordinates to its mean twist; its inertia for this twist, `body_inertia` (6, 6), is included in
-    `inertia`. For each link, `resultants` (6, n) give the wrench at its centre, in its frame. For each stack, `strokes` (n,) are the forces
-    due to a unit free stroke, and `free_strokes` (n,) are the coordinates after this stroke if nothing constrains it. `rigid` (n, 6) are
-    the rigid motions about the component's origin (only without fixed joints); `carried` (n, 6) are the inertial forces of unit rigid
-    accelerations. `seats` (6, n) give the twist of the surface around each end of a part without a shape. A component without joints has
-    one interface, whose twist is the component's rigid motion about the reference point of its first body.
+    The twist of an interface is at the interface's own point. `stiffness` and `inertia` contain a matrix (n, n) for each link and body. For
+    each body, `bodies` (6, n) map the coordinates to the mean twist of the body. `body_inertia` (6, 6) is the inertia of the body for its
+    mean twist, which is included in `inertia`. For each link, `resultants` (6, n) give the wrench at its centre, in its frame. For each
+    stack, `strokes` (n,) are the forces due to a unit free stroke, and `free_strokes` (n,) are the coordinates after this stroke if nothing
+    constrains the stack. `rigid` (n, 6) are the rigid motions about the component's origin (only without fixed joints); `carried` (n, 6)
+    are the inertial forces of unit rigid accelerations. `seats` (6, n) give the twist of the surface around each end of a part without a
+    shape. A component without joints has one interface, whose twist is the component's rigid motion about the reference point of its first
+    body.
     """
 
     interfaces: int
@@ -67,7 +68,7 @@ class Superelement:
 
 
 def hold_faces(element: Superelement, held: Sequence[bool]) -> Superelement:
-    """Return a superelement without the warps of some deformable faces, which stay plane; `held` marks these faces.
+    """Return a superelement in which the faces marked in `held` have no warps and therefore remain plane.
 
     >>> bare = Skin(*[np.zeros((0, 20))] * 5)
     >>> whole = Superelement(1, 12, {"a": np.eye(20)}, {}, {}, {}, {}, {}, {}, np.zeros((20, 6)), np.zeros((20, 6)), bare, 3, 1)

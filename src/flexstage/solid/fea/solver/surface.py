@@ -78,7 +78,7 @@ def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
 
 
 def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
-    """List the links and bodies of a component with the vertices (indices) of their skin. Names are those in this instance of the unit.
+    """List the links and bodies of a component with the vertices (indices) of their skin. The names are those of this instance of the unit.
 
     >>> from types import SimpleNamespace as Of
     >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))

@@ -1,7 +1,8 @@
 """Ties: effects of parts without a shape in a stage of solids, from their specified values.
 
-A spring, a force actuator, a compliance matrix, a contact or a superelement has no outline to mesh. Its stiffness and mass are specified,
-and equal in every model. Its end on an elastic body moves with the surface around it (`field.seat_motion`).
+A spring, a force actuator, a compliance matrix, a contact or a superelement has no outline to mesh. The stiffness and mass of these parts
+are specified, and are equal in every model. The end of a part on an elastic body moves with the surface around the end (see
+`field.seat_motion`).
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class End:
 
 @dataclass(frozen=True, eq=False)
 class ShapelessContribution:
-    """Contribution of a part without a shape: stiffness for its `strain`, and `inertia` for the motion of its ends and inner coordinates.
+    """Contribution of a part without a shape: stiffness for its `strain`, and `inertia` for the motions of its ends and inner coordinates.
 
     `carried` (r, 6) is the motion of the part's ends and inner coordinates if the whole stage moves rigidly about its origin. `passed` (w,
     s) maps the forces (s,) due to the part's strain to the output wrenches (w,). `damping` is the part's viscous damping for this strain.
@@ -81,12 +82,12 @@ def ends(assembly: Assembly) -> Iterator[End]:
 
 
 def inner_coordinates(element: PlacedSuperelement) -> tuple[str, ...]:
-    """Return names for the fixed-port modes of a superelement."""
+    """Return names for the modes of a superelement with fixed ports."""
     return tuple(f"{element.name}.mode{number + 1}" for number in range(len(_condensed(element).squares)))
 
 
 Twist = Callable[[str, str, Frame], Array]
-"""The twist (6, N) of a tie's end, by the end's name and its body, at a frame's origin in its axes."""
+"""Function of an end's name, its body and a frame, which returns the end's twist (6, N) at the origin and in the axes of the frame."""
 
 
 def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float) -> ShapelessContribution:
@@ -162,7 +163,7 @@ def stated_links(assembly: Assembly) -> dict[str, str]:
 
 
 def in_words(stated: Mapping[str, str]) -> str:
-    """Return the numbers of links with specified behaviour, by kind of part, in words; empty without such links.
+    """Return in words the numbers of links with specified behaviour, by kind of part; empty if there are no such links.
 
     >>> in_words({"a": "spring", "b": "spring", "motor": "voice_coil"})
     '2 springs, 1 voice coil as specified'

@@ -18,11 +18,11 @@ _EDGE = 1e-7
 
 
 def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, ...]:
-    """Find the binding limits and range ends of an optimum, sorted by the effect of a relative change of the limit or range.
+    """Find the limits and the ends of variables' ranges that bind at an optimum, sorted by the effect of their relative changes.
 
-    The multipliers come from a convex model with unit curvature around the optimum; the minimum of this model is the optimum itself. If the
-    minimum of the objective c_0 is sought under limits c_i <= e_i, the multiplier of limit i is the derivative -d c_0 / d e_i of this
-    minimum. Multipliers are derivatives, and therefore valid for small changes only; for repeated modes, they are one-sided derivatives.
+    The multipliers come from a convex model with unit curvature around the optimum; the minimum of this model is the optimum itself. The
+    multiplier of a limit c_i <= e_i is the derivative -d c_0 / d e_i of the minimum objective c_0. Multipliers are derivatives, and
+    therefore valid for small changes only; for repeated modes, they are one-sided derivatives.
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))

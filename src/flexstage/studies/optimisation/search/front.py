@@ -32,9 +32,10 @@ _KEEP = 1e-6
 def pareto_front(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Front:
     """Compute the Pareto front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 
-    First, each objective is optimised alone; then the other objective is optimised without a loss in the first one. Between the two
-    resulting designs, the first objective is optimised with equally spaced bounds on the second. Each search starts from both designs.
-    Dominated designs are left out. An interruption ends the search; the result then contains the designs found so far.
+    Each objective is optimised alone. Then the other objective is optimised, while the objective optimised first keeps its value. The two
+    resulting designs are the ends of the front. Between these ends, objective 1 is optimised under equally spaced bounds on objective 2,
+    with a search from each end design. Dominated designs are left out. An interruption ends the search; the result then contains the
+    designs found so far.
     """
     if len(definition.objectives) != 2:
         raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use `optimise` for one objective")

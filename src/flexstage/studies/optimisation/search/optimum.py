@@ -25,7 +25,7 @@ from flexstage.studies.sweeps.definition import Study
 _ALIKE = 1e-4
 
 Progress = Callable[[str], None]
-"""Called with the current task and the number of evaluated designs."""
+"""Function that is called with a text: the current task and the number of evaluated designs."""
 
 
 @check_arguments
@@ -33,10 +33,11 @@ Progress = Callable[[str], None]
 def optimise(study: Study, definition: OptimisationProblem, progress: Progress | None = None, *, contradictory: int = 6) -> Optimum:
     """Find the best design within the variables' ranges that meets all limits.
 
-    From every start, a sequence of convex models with exact derivatives is solved. Frequencies are represented by matrices of neighbouring
-    modes, so that modes may be repeated or cross. The method is local; `Optimum.agreeing` counts the starts that end at an equally good
-    design. If no design meets all limits, at most `contradictory` sets of contradicting limits are found. A keyboard interrupt ends the
-    search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
+    From every start, a sequence of convex models with exact derivatives is solved. The convex models represent the frequencies of
+    neighbouring modes as eigenvalues of a matrix; the modes may therefore be repeated or cross. The method is local; `Optimum.agreeing`
+    counts the starts that end at an equally good design. If no design meets all limits, at most `contradictory` sets of contradicting
+    limits are found. A keyboard interrupt ends the search with the best design so far. Raises `DesignError` for a study that cannot be
+    optimised.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> found = optimise(*leaf_study())
@@ -44,7 +45,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     (2, ['stroke.x at least 18 um'])
     """
     if len(definition.objectives) != 1:
-        raise refuse("optimise", f"must be one objective (got {len(definition.objectives)})", "Use `pareto_front` for two objectives")
+        raise refuse("optimise", f"needs one objective (got {len(definition.objectives)})", "Use `pareto_front` for two objectives")
     begun = time.monotonic()
     set_up = setting(study, definition)
     problem, begins = set_up.problem, set_up.starts()

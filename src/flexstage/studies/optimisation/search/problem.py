@@ -18,7 +18,7 @@ SPARE = 1e-8
 
 @dataclass(frozen=True)
 class Side:
-    """One-sided bound of the measure with number `index`; a design meets the bound if c <= 0.
+    """One-sided bound of the measure with number `index`. A design meets the bound if the constraint value c is 0 or less.
 
     For `at least`, c = (limit - value) / scale; for `at most`, c = (value - limit) / scale.
     """
@@ -64,7 +64,7 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Linear model of a `Side`: after a change d of the n variables, its value c is the largest eigenvalue of a matrix of k modes.
+    """Linear model of a `Side`: for a change d of the n variables, the constraint value c is the largest eigenvalue of a matrix of k modes.
 
     This matrix is `constant` (k, k) plus the sum of d_p times the matrix p of `slope` (n, k, k) over all variables p. For m scalar values,
     the matrices are diagonal, and only their diagonals (m,) and (n, m) are stored.
@@ -158,7 +158,7 @@ class Weights:
 
 
 def sides(problem: Problem) -> Iterator[Side]:
-    """Iterate over all sides; those of the objective are first.
+    """Iterate over all sides: first the sides of the objective, then the sides of the limits.
 
     >>> len(list(sides(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()))))
     1
@@ -171,7 +171,7 @@ def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], see
     """Compute the gradient (n,) of the Lagrangian at a design `point`.
 
     The multipliers `weights` were computed for the modes and pieces of the design `seen_from`, by default `point`. Returns `None` if the
-    pieces of both designs do not correspond.
+    pieces of `point` and `seen_from` do not correspond.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0]), np.array([[2.0]]), Extreme.LEAST),))
     >>> lagrangian(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), at, (Weights(np.ones(1)),)).tolist()

@@ -22,7 +22,7 @@ STEPS = 80
 """Largest number of steps of a search."""
 
 Evaluate = Callable[[Array], "list[Point | str]"]
-"""Points of s designs, or the reasons for their failures."""
+"""Function that evaluates s designs. It returns the point, or the reason for the failure, of each design."""
 
 Walk = Generator[Array, "Point | str", "Trace"]
 """A search as a generator: it yields a design to evaluate, receives its point or the reason for its failure, and returns a trace."""
@@ -46,10 +46,10 @@ class Trace:
 def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough: float = -np.inf) -> Walk:
     """Search from a `start` (n,), given by fractions of the ranges.
 
-    The search ends early if the objective, the largest constraint value c of its sides (see `Side`), is at most `enough`. The method is
-    sequential quadratic programming with an exact penalty for the largest violation (Fletcher & de la Maza, Mathematical Programming 43
-    (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The multipliers of modes are transferred to
-    the next design by the overlap of mode shapes. `trace` can be read during the search.
+    The objective is the largest constraint value c of its sides (see `Side`). The search ends early if the objective is at most `enough`.
+    The method is sequential quadratic programming with an exact penalty for the largest violation (Fletcher & de la Maza, Mathematical
+    Programming 43 (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The multipliers of modes are
+    transferred to the next design by the overlap of mode shapes. `trace` can be read during the search.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

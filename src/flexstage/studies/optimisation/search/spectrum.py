@@ -93,7 +93,7 @@ def _select_modes(requested: Modes, values: Array, parts: Array) -> Array:
     else:
         found = np.arange(min(requested.count + _ROOM, len(values)))
     if len(found) < requested.count:
-        raise refuse("frequency", f"the stage has only {len(found)} such modes", "Use a lower number")
+        raise refuse("frequency", f"the stage has fewer modes than requested (got {len(found)})", "Use a lower number")
     return found
 
 

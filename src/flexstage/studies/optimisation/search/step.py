@@ -60,12 +60,13 @@ class Bounds:
 
 
 def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: Point | None = None) -> Step:
-    """Minimise t + d^T B d / 2 + penalty s over all design changes d within the radius and the ranges; B is the `hessian`.
+    """Minimise t + d^T B d / 2 + penalty s over all changes d of the design; B is the `hessian`.
 
-    To first order, t is an upper bound of the objective's increase, and s >= 0 is an upper bound of the violation of every limit. Sides of
-    frequencies are matrices. Eigenvectors of the changed matrices define additional planes until no eigenvalue exceeds the bound set by t
-    (objective) or s (limits). This method of planes is exact even for crossing modes. If a design was `tried`, the planes are shifted so
-    that they match its values (second-order correction). Without such shifts, the steps along curved limits would be short.
+    The changes are limited by the trust radius and the ranges. To first order, t is an upper bound of the objective's increase, and s >= 0
+    is an upper bound of the violation of every limit. Sides of frequencies are matrices. The eigenvectors of the changed matrices define
+    additional planes until no eigenvalue exceeds t (objective) or s (limits). This method of planes is exact even for crossing modes. If a
+    design was `tried`, the planes are shifted so that they match its values (second-order correction). Without such shifts, the steps along
+    curved limits would be short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

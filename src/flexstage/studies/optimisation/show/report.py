@@ -22,7 +22,7 @@ from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
 from flexstage.studies.sweeps.show.report import study_head
 
-_SEARCH = "Left: accepted designs of every start; open marks are infeasible. Right: nominal and final value of each variable in its range."
+_SEARCH = "Left: accepted designs of every start; designs with open marks are infeasible. Right: nominal and final value of each variable."
 
 
 def optimise_report(found: Optimum) -> str:

@@ -57,7 +57,7 @@ def _objective(found: Optimum) -> Table:
             rows.append((title, format_value(found.value(point), unit, 6), f"{100.0 * change:+.2f} %"))
     notes = [f"{found.agreeing} of {len(found.starts)} starts agree. {found.evaluated} designs were evaluated with derivatives."]
     if found.rounded is not None and found.rounded.point is not None:
-        notes.append(f"Loss by rounding: {format_value(found.rounded.loss, unit, 3)} ({found.rounded.tried} neighbours evaluated).")
+        notes.append(f"Loss by rounding: {format_value(found.rounded.loss, unit, 3)} ({found.rounded.tried} rounded designs evaluated).")
     elif found.rounded is not None:
         notes.append(f"Not rounded: {found.rounded.reason}.")
     notes += _notes(interrupted=found.interrupted, idle=found.idle)
@@ -101,7 +101,7 @@ def _starts(found: Optimum) -> dict[str, Start]:
 
 
 def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:
-    """Return the text on a contradiction, with the nearest possible values of its limits, and the advice."""
+    """Return a text and an advice on a contradiction. The text contains the nearest possible values of the limited measures."""
     said = [f"'{limit.key} {limit.text}'" for limit in each.limits]
     at = [_nearest_value(limit.key, limit.point, each.point, found) for limit in each.limits]
     least = f"the smallest violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"

@@ -1,7 +1,7 @@
 """Platform frequencies of thousands of designs per second. The computation is planned once for a study, then used for all its designs.
 
-The method for a design, and the choice whether descriptions are fitted, depend only on the study. They depend neither on the division into
-pieces, nor on the number of remaining designs.
+The method for a design, and the choice whether the data of designs are fitted over the ranges, depend only on the study. They depend
+neither on the division into pieces, nor on the number of remaining designs.
 """
 
 from __future__ import annotations
@@ -36,9 +36,11 @@ _SURE = (Status.ITERATED, Status.WHOLE)
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """The engine of a study. `modes` contains the platform mode (from 0) of each computed response; it is empty without a `plan`.
+    """The engine of a study.
 
-    The inputs of the plan are `numbers` if present, else the variables. `loaded`: designs may be unstable under their permanent load.
+    `modes` contains the number of the platform mode, counted from 0, for each response that the engine computes; it is empty without a
+    `plan`. The inputs of the plan are `numbers` if present, else the variables. If `loaded` is true, designs may be unstable under their
+    permanent load.
     """
 
     modes: Mapping[str, int]

@@ -19,7 +19,7 @@ _MOST = 256
 """Number of designs evaluated at once; the matrices of more designs do not fit into a processor's cache."""
 
 Reasons = dict[int, str]
-"""Reasons of failed designs, by row."""
+"""Reasons for the failures of designs, by row number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class Piece:
 def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> Piece:
     """Compute the designs `start` to `stop` (excluded) of a study's plan. If `engine` is absent, the study's own engine is made.
 
-    An invalid design, or a design without a value, gets NaN and the reason.
+    For an invalid design, or a design without a value, the responses are NaN, and `failures` contains the reason.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> found = piece(neck_study(), 0, 2)

@@ -42,12 +42,12 @@ _COPIES = 4.0
 """Number of copies of all results that are in memory at the same time, during reading."""
 
 Progress = Callable[[int, int], None]
-"""Called with the number of computed designs, and of all designs."""
+"""Function that is called with the number of computed designs and the number of all designs."""
 
 
 @dataclass(frozen=True)
 class Run(CheckedFields):
-    """Options of a run: number of `workers` (processes), by default one for each core; whether to `resume` from existing results."""
+    """Options of a run: `workers`, the number of processes (default: one per core), and whether to `resume` from existing results."""
 
     workers: int | None = None
     resume: bool = False
@@ -59,12 +59,12 @@ DEFAULT = Run()
 @check_arguments
 @one_thread
 def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
-    """Compute all designs of a study into the results file at `path`.
+    """Compute all designs of a study, and store them in the results file `path`.
 
-    Pieces (see `piece_size`) are written one by one and combined in the file at the end of the run. Results do not depend on the number of
-    workers or on the sequence of pieces; equal studies give equal files. Results computed before an interruption are kept. Raises
-    `DesignError` for an existing file without `resume`, a file of another study, a file in use, measures that the design does not have, and
-    a full disk.
+    Designs are computed in pieces of several designs each (see `piece_size`). Each piece is written to its own file; at the end of the run,
+    the pieces are combined in the results file. Results do not depend on the number of workers or on the sequence of pieces; equal studies
+    give equal files. Results computed before an interruption are kept. Raises `DesignError` if the results file exists and `how.resume` is
+    false, if the file belongs to another study or is in use, if the design does not have a measure of the study, and if the disk is full.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study

@@ -1,7 +1,8 @@
 """Results of studies on disk. Pieces are written one by one, then combined in one self-describing HDF5 file.
 
-`results.h5` contains the combined pieces, and `results.h5.pieces/` the later ones. Only complete files are renamed, so that a reader of
-both finds every computed design exactly once at any time. Files with the same designs have the same bytes, regardless of interruptions.
+`results.h5` contains the combined pieces. The folder `results.h5.pieces/` contains the later pieces. Only complete files are renamed, so
+that a reader of both finds every computed design exactly once at any time. Files with the same designs have the same bytes, regardless of
+interruptions.
 """
 
 from __future__ import annotations
@@ -49,10 +50,11 @@ class Failure:
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """Designs computed so far: their numbers `designs` (n,), `variables` (n, d) and `responses` (n, r) in SI, failures by design number.
+    """Designs computed so far: their numbers `designs` (n,), `variables` (n, d) and `responses` (n, r) in SI.
 
-    `names` and `units` each contain the entries of the variables, then those of the responses. `planned` is the number of all designs;
-    `facts` are the inputs of the study. `text` is the study's file; `made` contains the versions of the programs.
+    `failures` contains the reasons for failures by design number. `names` and `units` each contain the entries of the variables, then those
+    of the responses. `planned` is the number of all designs; `facts` are the inputs of the study. `text` is the study's file; `made`
+    contains the versions of the programs.
     """
 
     designs: Array
@@ -214,7 +216,7 @@ def _is_count(value: Attribute | None) -> bool:
 
 @check_arguments
 def read_results(path: str | os.PathLike[str]) -> Results:
-    """Read results, complete or not, from their file or the folder of pieces next to it. Raises `DesignError` for invalid files.
+    """Read a results file, complete or partial, and its pieces that are not yet combined. Raises `DesignError` for invalid files.
 
     >>> read_results("nowhere/results.h5")
     Traceback (most recent call last):
@@ -293,8 +295,8 @@ def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
 def gather(path: Path, study: Study, size: int) -> Array:
     """Write the results file with all pieces of `size` designs, and remove the pieces.
 
-    Returns a mask (k,) of the planned pieces: true for those in the file. Raises `DesignError` if the file cannot be written; file and
-    pieces are then unchanged.
+    Returns a mask (k,) of the planned pieces, which is true for pieces in the file. Raises `DesignError` if the file cannot be written;
+    file and pieces are then unchanged.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study

@@ -78,7 +78,7 @@ def share_table(found: Effects) -> Table:
         rows.append(cells)
     note = "First order: fraction of the response's variance due to the variable alone. "
     note += (
-        "Total: due to the variable and its interactions."
+        "Total: fraction due to the variable and its interactions."
         if found.total is not None
         else "The remainder is due to interactions, and to variation within bins."
     )

@@ -49,7 +49,7 @@ def answer_report(found: Answers) -> str:
 
 
 def bound_figure(answers: list[tuple[Answer, float]]) -> Any:
-    """Draw the first frequency of each answer against its width, and its bound. Efficiency is (frequency/bound)^2."""
+    """Draw the first frequency of each answer, and the bound of this frequency, against its width. Efficiency is (frequency/bound)^2."""
     with style_context():
         figure = canvas(FULL, 2.9)
         ax = panels(figure, 1, 1, Margins(left=0.75, bottom=0.5, right=0.2))[0, 0]

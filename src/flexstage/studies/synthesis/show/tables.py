@@ -27,7 +27,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     if points := joint_front(found):
         goal, second = (f"{key}, {way}d" for way, key in (found.specification.goal, found.specification.second_goal or ("", "")))
         rows = [(Cell(answer.architecture, Mark.STRONG), answer.actuator, *_front_cells(answer, each)) for answer, each in points]
-        notes = ["No design of any pair is better in both goals. Run the study of a design to compute its own front."]
+        notes = ["No design of any pair is better in both goals. Run the study of a design to compute the front of its pair."]
         yield make_table("Front of both goals", ["architecture", "actuator", Column(goal), Column(second)], rows, notes=notes)
     if found.failed:
         rows = [
@@ -36,9 +36,9 @@ def answer_tables(found: Answers) -> Iterator[Table]:
         ]
         notes = [
             "Least violation: if each requirement is relaxed by this percentage, a design meets all (lumped model, found by search).",
-            "Possible with one relaxed: the best value of this requirement that the search finds if all others are met.",
+            "Possible if relaxed alone: the best value of this requirement that the search finds if all other requirements are met.",
         ]
-        heads = ["architecture", "actuator", Column("least violation", "%"), "contradicting requirements", "possible with one relaxed"]
+        heads = ["architecture", "actuator", Column("least violation", "%"), "contradicting requirements", "possible if relaxed alone"]
         yield make_table("Failed", heads, rows, notes=notes)
     if found.impossible:
         rows = [(Cell(name, Mark.STRONG), actuators, *_shortfall_cells(best)) for name, actuators, best in _excluded(found.impossible)]
@@ -74,9 +74,9 @@ def _answer_table(found: Answers) -> Table:
     numbers = map(Column, (f"{key}, {way}d", "elastic bodies", *(each.heading for each in more), "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
-        "Efficiency: stroke energy that the payload alone needs for the first frequency, relative to that of the actuators; at most 100 %.",
+        "Efficiency: stroke energy that the payload alone needs for the first frequency, as a fraction of the actuators' stroke energy.",
         "Warnings: number of warnings that flexstage check prints.",
-        "Elastic bodies: first natural frequency (unwanted one, if only this is required), with flexibility estimated from outlines.",
+        "Elastic bodies: first frequency (first unwanted frequency if only this is required), with flexibility estimated from outlines.",
         *(each.note for each in more),
         *(f"{each.pair} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
@@ -104,7 +104,7 @@ class _Extra:
 _MORE = (
     _Extra(
         "finite elements",
-        "Finite elements: the frequency by finite elements; with it, the stage meets all requirements. -: not verified.",
+        "Finite elements: the frequency by finite elements; with these results, the stage meets all requirements. -: not verified.",
         lambda answer: _frequency(answer.verified),
     ),
     _Extra(
@@ -114,7 +114,7 @@ _MORE = (
     ),
     _Extra(
         "loop",
-        "Loop: lowest sensitivity crossover with the default controller and assumed sensors.",
+        "Loop: lowest sensitivity crossover of the control loop with the default controller and assumed sensors.",
         lambda answer: None if answer.crossover is None else format_value(answer.crossover, "Hz", 3),
     ),
 )

@@ -19,8 +19,8 @@ from flexstage.studies.tolerances.summary import Crosstalk
 _FAR = 10.0
 _FINE = 1e3
 _COLUMNS = (
-    "alone: only this entry deviates. equal shares: all entries deviate, and each uses the same fraction of the margin. common factor: the "
-    "deviations of all entries have the same factor. alone and equal shares are unknown (-) if the interval of an entry is asymmetric."
+    "alone: other entries have the specified deviations. equal shares: each entry uses the same fraction of the margin. common factor: "
+    "the deviations of all entries have the same factor. alone and equal shares are unknown (-) if any entry has an asymmetric interval."
 )
 _NO_YIELD = "No yield, because neither [requirements] of the design nor [limits] of the study define a specification."
 
@@ -35,7 +35,7 @@ def tolerance_tables(found: Toleranced) -> list[Table | None]:
 
 
 def scatter_table(found: Toleranced) -> Table:
-    """Tabulate the deviations, and the numbers to which they apply."""
+    """Tabulate the deviations, and the addresses of the numbers that deviate."""
     rows = [
         (Cell(each.name, Mark.STRONG), ", ".join(each.source), distribution_text(each, each.distribution), _reach_text(each))
         for each in found.study.scatters
@@ -44,7 +44,7 @@ def scatter_table(found: Toleranced) -> Table:
     copies = f"{found.summary.copies} samples of {found.study.design.name}, {plan.sampling.value}, seed {plan.seed}"
     alone = getattr(plan, "alone", 0)
     notes = [f"{copies}." + (f" In addition, {alone} samples with the scatter of each entry alone." if alone else "")]
-    return make_table("Scatter", ["", "number", "deviation", "in"], rows, notes=notes)
+    return make_table("Scatter", ["", "number", "deviation", "applies to"], rows, notes=notes)
 
 
 def _reach_text(scatter: Scatter) -> str:
@@ -77,7 +77,7 @@ def _size(scatter: Scatter, value: float) -> str:
 
 
 def yield_table(found: Toleranced) -> Table | None:
-    """Tabulate each requirement with its nominal value and its yield. Without a specification, it says why there is no yield."""
+    """Tabulate each requirement with its nominal value and its yield. Without requirements, state why there is no yield."""
     together, failed = found.summary.together, found.summary.failed
     if together is None:
         return make_table("Yield", [""], [(_NO_YIELD,)])
