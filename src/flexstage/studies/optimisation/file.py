@@ -21,14 +21,14 @@ def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
     2
     """
     table = study_file(study.text, where).optimise
-    findings: list[Finding] = []
+    findings = list[Finding]()
     definition = OptimisationProblem(_objectives(table, study, findings), table.starts, table.seed, table.pareto_points, table.requirements)
     require(with_lines(findings, study.text, where))
     return definition
 
 
 def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> tuple[Objective, ...]:
-    found: list[Objective] = []
+    found = list[Objective]()
     for aim, names in ((ObjectiveDirection.MAXIMISE, table.maximise), (ObjectiveDirection.MINIMISE, table.minimise)):
         for name in names or ():
             at = f"optimise.{aim.value}"

@@ -108,7 +108,7 @@ class Values:
     @cached_property
     def _modes(self) -> tuple[Modes, ...]:
         """The required spectra: of the platform, of all bodies, or both; each up to the highest requested number."""
-        highest: dict[bool, int] = {}
+        highest = dict[bool, int]()
         for each in self.measures:
             if each.kind in _SPECTRAL:
                 platform = each.kind is platform_frequency
@@ -149,7 +149,7 @@ class Values:
             require_valid(replace(stepped, formulas={}))  # formulas have just been computed
             bench = StageResults(stepped, self._command)
             modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
-            columns: dict[tuple[str, str], Sequence[Scalars | NumberedFrequency]] = {}
+            columns = dict[tuple[str, str], Sequence[Scalars | NumberedFrequency]]()
             for key, measure in {(one.key, one.point): one for one in self.measures}.items():  # an objective may be a limit, too
                 if measure.kind in _SPECTRAL:
                     columns[key] = [self._nth_frequency(own, measure) for own in modes]

@@ -95,7 +95,7 @@ def read_opening(text: str, where: str, folder: Path | None) -> Opening:
         design, variant = start(file, folder or Path())
     except DesignError as error:
         raise DesignError(with_lines(error.findings, text, where)) from None
-    findings: list[Finding] = []
+    findings = list[Finding]()
     return Opening(file, design, _responses(file, design, findings), _limits(file, design, findings), findings, variant)
 
 
@@ -122,10 +122,10 @@ def _variable(table: VariedTable, name: str, head: Opening) -> Variable:
         variant = head.variant
         addresses, quantity = read_parameters(table, where, variant)
     shares = (is_share(table.low), is_share(table.high))
-    findings: list[Finding] = []
+    findings = list[Finding]()
     if shares[0] != shares[1]:
         findings.append(Finding(f"{where}.to", "only one end of the range is relative (%)", "Use % for both ends or for neither"))
-    ends: list[float] = []
+    ends = list[float]()
     for key, raw, share in zip(("from", "to"), (table.low, table.high), shares, strict=True):
         try:
             ends.append(1.0 + parse_amount(raw, RATIO, f"{where}.{key}") if share else parse_amount(raw, quantity, f"{where}.{key}"))
@@ -155,8 +155,8 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
 
 def _quantity(where: str, addresses: tuple[str, ...], design: Mechanism) -> Quantity:
     """The quantity of a variable; all addresses must have the same."""
-    found: list[Quantity] = []
-    findings: list[Finding] = []
+    found = list[Quantity]()
+    findings = list[Finding]()
     for address in addresses:
         try:
             wrong = list(not_numbers(design, (address,)))
@@ -169,7 +169,7 @@ def _quantity(where: str, addresses: tuple[str, ...], design: Mechanism) -> Quan
 
 
 def _responses(file: StudyFile, design: Mechanism, findings: list[Finding]) -> dict[str, Measure]:
-    found: dict[str, Measure] = {}
+    found = dict[str, Measure]()
     for name, text in file.responses.items():
         try:
             found[name] = measure(design, text, f"responses.{name}")
@@ -179,7 +179,7 @@ def _responses(file: StudyFile, design: Mechanism, findings: list[Finding]) -> d
 
 
 def _limits(file: StudyFile, design: Mechanism, findings: list[Finding]) -> tuple[Requirement, ...]:
-    found: list[Requirement] = []
+    found = list[Requirement]()
     for key, text in file.limits.items():
         try:
             found.append(requirement(design, key, text, f"limits.{key}"))

@@ -25,7 +25,7 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
     >>> start(study_file(text, "here"), Path())[1].stated[0][0]
     'slope'
     """
-    findings: list[Finding] = []
+    findings = list[Finding]()
     if bool(file.design) == bool(file.case):
         found = "both a design file and a case are specified" if file.design else "design missing"
         findings.append(Finding("design", found, 'Use e.g. design = "stage.toml", or case = "double-triangle"'))
@@ -44,8 +44,8 @@ def _draw(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
 
 def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
     """Parameters in the table: numbers of a quantity with their units."""
-    found: dict[str, Stated] = {}
-    findings: list[Finding] = []
+    found = dict[str, Stated]()
+    findings = list[Finding]()
     for key, value in _leaves(table):
         try:
             known = parameter(case(name), key, f"parameters.{key}")
@@ -80,9 +80,9 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
     if variant is None:
         advice = 'Use the address of a number: address = "parts.neck.thickness"'
         raise refuse(f"{where}.parameter", "a design file has no parameters", advice)
-    names: list[str] = []
-    found: list[Quantity] = []
-    findings: list[Finding] = []
+    names = list[str]()
+    found = list[Quantity]()
+    findings = list[Finding]()
     for each in table.parameter or ():
         try:
             known = parameter(variant.start, each, f"{where}.parameter")

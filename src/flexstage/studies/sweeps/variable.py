@@ -146,7 +146,7 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
     >>> [str(each) for each in variable_findings(double_triangle(), [neck])]
     ['variables.neck: the range is empty (got 2 mm to 1 mm). Use from < to.']
     """
-    owners: dict[str, str] = {}
+    owners = dict[str, str]()
     for variable in variables:
         where = f"variables.{variable.name}"
         if not variable.low < variable.high:

@@ -24,6 +24,8 @@ from flexstage.spatial.frame import COMPONENTS
 
 _DIGITS = 9
 _STEPS = 12
+_SPARE = 5e-4
+"""Fraction by which corrected limits are stricter, because ratios of models change between designs."""
 _CLOSE = 1e-4
 """Largest deviation from the required displacement, relative to this displacement."""
 
@@ -133,7 +135,7 @@ def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Ma
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drawn = required_values(parallelogram())
     >>> missed_limits(parallelogram(), drawn, ({"frequency.platform.1": 0.25 * drawn["frequency.platform.1"]},))
-    {'frequency.platform.1': 'at least 2000 Hz'}
+    {'frequency.platform.1': 'at least 2001 Hz'}
     """
     lines = {line.key: line for line in requirements(stage) if line.key in drawn}
     for key, line in lines.items():
@@ -153,4 +155,5 @@ def _stricter(lines: Mapping[str, Requirement], ratios: Mapping[str, float]) -> 
         strict = min(ratio, 1.0) if line.sense is Sense.AT_LEAST else max(ratio, 1.0)
         factor = strict * max(longer, 1.0) if line.kind is safety_at_strokes else strict
         if factor != 1.0:
-            yield key, f"{line.sense.value} {show(line.limit / factor, line.quantity, digits=_DIGITS)}"
+            spare = 1.0 + _SPARE if line.sense is Sense.AT_LEAST else 1.0 - _SPARE
+            yield key, f"{line.sense.value} {show(spare * line.limit / factor, line.quantity, digits=_DIGITS)}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Annotated
@@ -158,26 +159,33 @@ def search(
     """
     names = (pair.architecture.name, pair.actuator.name)
     limits, known, searches = dict[str, str](), answer, 0 if answer is None else answer.rounds
+    goal = specified_goals(pair.architecture, spec)[0]
     for _ in range(_ROUNDS):
         try:
             if known is None:
                 searches += 1
-                found = optimum(spec, pair, specified_goals(pair.architecture, spec)[0], limits, progress)
+                found = optimum(spec, pair, goal, limits, progress)
                 if found.final is None:
                     return _failed(spec, pair, found, limits)
                 known = replace(_answer(spec, pair, found, limits), rounds=searches)
             known = _estimated(known, spec, pair, verify)
-            missed = missed_limits(known.stage, known.values, ({**known.elastic, **known.verified}, known.displaced))
+            missed = _missed(known)
         except DesignError as error:
             return FailedPair(*names, None, {}, str(error))
         if not missed:
             return known if known.front or spec.second_goal is None else replace(known, front=front(spec, pair, limits, progress))
-        limits, known = missed, None
-    return FailedPair(*names, None, {}, f"with {_models(verify)}, {'; '.join(f'{key} must be {text}' for key, text in limits.items())}")
+        limits, known = _missed(known, {goal[1]}) or missed, None  # a goal needs no stricter limit until the others are met
+    models = "elastic bodies" if verify is None else "finite elements"
+    return FailedPair(
+        *names, None, {}, f"with {models} and large displacements, {'; '.join(f'{key} must be {text}' for key, text in limits.items())}"
+    )
 
 
-def _models(verify: Estimator | None) -> str:
-    return "elastic bodies and large displacements" if verify is None else "finite elements and large displacements"
+def _missed(answer: Answer, without: Collection[str] = ()) -> dict[str, str]:
+    """Stricter limits of the lumped model if better models miss a requirement; some requirements may be left out."""
+    asked = {key: text for key, text in answer.stage.requirements.items() if key not in without}
+    better = ({**answer.elastic, **answer.verified}, answer.displaced)
+    return missed_limits(replace(answer.stage, requirements=asked), answer.values, better)
 
 
 def _estimated(answer: Answer, spec: Specification, pair: CandidatePair, verify: Estimator | None) -> Answer:
@@ -211,9 +219,12 @@ def manufacturing_yield(answer: Answer) -> float | None:
 def relaxations(
     spec: Specification, pair: CandidatePair, failed: FailedPair, progress: Callable[[str], None] | None = None
 ) -> Iterator[Relaxation]:
-    """Yield the best value of each contradicting requirement if all others are met; requirements along x and y are relaxed together."""
-    stage = loads(draw(pair.architecture, spec, pair.actuator))
-    lines = {line.key: line for line in requirements(stage)}
+    """Yield the best value of each contradicting requirement if all others are met; requirements along x and y are relaxed together.
+
+    Each value is from one start, with the limits of the other requirements corrected until better models meet these requirements. The value
+    of the lumped model is multiplied by the ratios of the better models' values to it, if the result is stricter.
+    """
+    lines = {line.key: line for line in requirements(loads(draw(pair.architecture, spec, pair.actuator)))}
     done = set[str]()
     for key in failed.requirements:
         kind, _, axis = key.rpartition(".")
@@ -222,12 +233,22 @@ def relaxations(
             continue
         done |= group
         line = lines[key]
-        goal = ("maximise" if line.sense is Sense.AT_LEAST else "minimise", key)
+        is_least = line.sense is Sense.AT_LEAST
+        goal = ("maximise" if is_least else "minimise", key)
+        limits = failed.corrected
         with suppress(DesignError):
-            found = optimum(spec, pair, goal, {**failed.corrected, **dict.fromkeys(group)}, progress)
-            if found.final is not None:
-                raised = requirement(stage, key, failed.corrected.get(key, line.text), key).limit
-                yield Relaxation(key, line.text, float(found.final.values[0]) * (line.limit / raised if raised else 1.0), line.quantity.si)
+            for _ in range(_ROUNDS):
+                found = optimum(replace(spec, starts=1), pair, goal, {**limits, **dict.fromkeys(group)}, progress)
+                if found.final is None:
+                    break
+                known = _estimated(_answer(spec, pair, found, limits), spec, pair, None)
+                limits = _missed(known, group)
+                if not limits:
+                    lumped = known.values[key]
+                    ratios = [each[key] / (lumped or 1.0) for each in (known.elastic, known.displaced) if key in each]
+                    value = (min if is_least else max)(lumped, lumped * math.prod(ratios))
+                    yield Relaxation(key, line.text, value, line.quantity.si)
+                    break
 
 
 def optimum(

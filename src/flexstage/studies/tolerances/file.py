@@ -138,7 +138,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
     """One entry; raises `DesignError` with all errors in it."""
     where = f"scatter.{name}"
     sources = table.address or (name,)
-    findings: list[Finding] = []
+    findings = list[Finding]()
     components = _components(sources, where, bench, findings)
     addresses = [address for members in components.values() for address in members]
     shape = _shape(table, where, findings)
@@ -161,7 +161,7 @@ def _no_share(where: str, addresses: list[str], design: Mechanism) -> list[Findi
 
 
 def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings: list[Finding]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    found = dict[str, list[str]]()
     for source in sources:
         try:
             reached = reach(bench.design, source)
@@ -196,8 +196,8 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
     specified = {key: text for key, text in raw.items() if text is not None}
     if len({is_share(text) for text in specified.values()}) > 1:
         raise refuse(f"{where}.within", "some amounts are relative (%), others are not", "Use % for all amounts or for none")
-    sizes: dict[str, float] = {}
-    findings: list[Finding] = []
+    sizes = dict[str, float]()
+    findings = list[Finding]()
     for key, text in specified.items():
         wanted = RATIO if is_share(text) else quantity
         try:

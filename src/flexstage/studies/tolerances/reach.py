@@ -56,8 +56,8 @@ def reach(design: Mechanism, source: str) -> ScatteredNumbers:
     >>> list(reach(parallelogram(), "units.shift").components)
     ['x', 'y', 'z']
     """
-    shared: dict[str, str] = {}
-    components: dict[str, list[str]] = {}
+    shared = dict[str, str]()
+    components = dict[str, list[str]]()
     links = _described(design)
     for address in _addresses(design, source.strip()):
         for component, number in _numbers(design, address):
@@ -114,7 +114,7 @@ def _of_links(design: Mechanism, source: str, wanted: Callable[[PlacedLink], boo
 
 def _stated_addresses(design: Mechanism, source: str, candidates: Iterator[str]) -> tuple[str, ...]:
     """The addresses that the design states; if none, the error of the first."""
-    found: list[str] = []
+    found = list[str]()
     complaint: DesignError | None = None
     for address in candidates:
         try:

@@ -116,7 +116,7 @@ def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, 
     >>> [each.address for each in targets(parallelogram(), [Variable("t", tuple(both), LENGTH, -1e-5, 1e-5)], both)]
     ['parts.leaf.thickness']
     """
-    reached: dict[str, tuple[tuple[int, float], ...]] = {}
+    reached = dict[str, tuple[tuple[int, float], ...]]()
     for number, variable in enumerate(variables):
         for address in dict.fromkeys(variable.addresses):
             factor = float(get(design, address)) if variable.relative else 1.0
@@ -126,7 +126,7 @@ def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, 
 
 
 def _merge_copies(design: Mechanism, reached: dict[str, tuple[tuple[int, float], ...]], shared: dict[str, str]) -> list[Target]:
-    copies: dict[str, list[str]] = {}
+    copies = dict[str, list[str]]()
     for address, origin in shared.items():
         copies.setdefault(origin, []).append(address)
     alike = {

@@ -42,7 +42,7 @@ def pareto_front(study: Study, definition: OptimisationProblem, progress: Progre
     begun = time.monotonic()
     set_up = setting(study, definition)
     counted = Count(progress, "ends of the front")
-    found: list[Point] = []
+    found = list[Point]()
     against: tuple[Contradiction, ...] = ()
     interrupted = False
     try:
@@ -71,8 +71,8 @@ def pareto_front(study: Study, definition: OptimisationProblem, progress: Progre
 
 def _ends(set_up: Setting, counted: Count) -> tuple[list[Point], list[Trace]]:
     """The best design in each objective; nothing without a feasible design."""
-    ends: list[Point] = []
-    all_traces: list[Trace] = []
+    ends = list[Point]()
+    all_traces = list[Trace]()
     for number in (0, 1):
         problem = Problem((set_up.objective(number),), set_up.problem.limits)
         traces = run_searches([search(problem, start) for start in set_up.starts()], set_up.values, counted)

@@ -160,7 +160,7 @@ def run_searches(
         answers = evaluate(np.stack(list(waiting.values())))
         if told is not None:
             told(len(answers))
-        following: dict[int, Array] = {}
+        following = dict[int, Array]()
         for number, answer in zip(waiting, answers, strict=True):
             try:
                 following[number] = walks[number].send(answer)

@@ -128,7 +128,7 @@ def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
 
 def failure_table(results: Results) -> Table:
     """Tabulate the reasons for failed designs, the most frequent first."""
-    reasons: dict[str, list[int]] = {}
+    reasons = dict[str, list[int]]()
     for design, reason in results.failures.items():
         reasons.setdefault(_NUMBER.sub("", reason), []).append(design)
     ranked = sorted(reasons.values(), key=lambda designs: -len(designs))

@@ -32,7 +32,7 @@ def answer_report(found: Answers) -> str:
     bounded = [(each, each.efficiency) for each in found.answers if each.efficiency]
     caption = "frequency and width of the designs found"
     picture = Picture(to_svg(bound_figure(bounded), "bound", caption), _BOUND) if bounded else None
-    fronts: list[Any] = []
+    fronts = list[Any]()
     if points:
         fronts = [tables[1], Picture(to_svg(front_figure(found, points), "front", "front of both goals"), "Front of both goals.")]
     stages = [BlockRow(tuple(_stage_blocks(each, number))) for number, each in enumerate(found.answers, 1)]
