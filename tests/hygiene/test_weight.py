@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 70_000,
     "apps": 39_400,
     ".": 400,
-    "all": 825_400,
+    "all": 825_500,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
