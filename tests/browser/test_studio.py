@@ -43,8 +43,9 @@ def until(page: Page, expression: str, patience: float = PATIENCE) -> object:
 def settled(page: Page) -> None:
     """All results are those of the text as it is, and the picture too."""
     until(page, "studio.state.value")
-    for each in ("figures", "verdicts", "reach"):
+    for each in ("figures", "verdicts"):
         until(page, f"studio.{each}.value?.revision === studio.state.value.revision")
+    until(page, "studio.tab.value !== 'figures' || studio.reach.value?.revision === studio.state.value.revision")  # not computed unseen
     until(page, "studio.scene.value && studio.viewer.value")
 
 
