@@ -143,24 +143,21 @@ def _leaf() -> Section:
 def _specification() -> Section:
     """The strokes that the paper requires, and those of the stages found by `flexstage design` for the tutorial's specification."""
     text = Path(__file__).parents[2].joinpath("docs", "tutorials", "specification.md").read_text(encoding="utf-8")
-    found = fs.design(loads_specification(text.partition("```toml file=spec.toml\n")[2].partition("```")[0]))
-    required = {
-        "x": ("50", "um"),
-        "y": ("50", "um"),
-        "z": ("150", "um"),
-        "rx": ("733", "urad"),
-        "ry": ("733", "urad"),
-        "rz": ("244", "urad"),
-    }
+    specification = loads_specification(text.partition("```toml file=spec.toml\n")[2].partition("```")[0])
     rows = tuple(
-        Row(f"{answer.architecture}, stroke {axis}", "paper, required", printed, math.floor(1e6 * stroke), unit, relative(0.0), least=True)
-        for answer in found.answers
-        for axis, (printed, unit) in required.items()
-        for stroke in (answer.values[f"stroke.{axis}"],)
+        Row(
+            f"{answer.architecture}: stroke over required stroke, smallest",
+            "paper, required",
+            "1",
+            math.floor(100.0 * least) / 100.0,
+            least=True,
+        )
+        for answer in fs.design(specification).answers
+        for least in (min(answer.values[f"stroke.{axis}"] / value for axis, value in specification.displacements.items()),)
     )
     about = (
         "Stages found by `flexstage design` for the required strokes and the box of Shin & Moon, with the specification of the "
-        "[tutorial](../tutorials/specification.md), where payload and opening are assumed. Strokes are rounded down. The paper gives no "
+        "[tutorial](../tutorials/specification.md), where payload and opening are assumed. The ratios are rounded down. The paper gives no "
         "frequency to compare: the tutorial compares them with the case `double-triangle`."
     )
     return Section("Stages found for the paper's strokes", about, rows, repeat="flexstage design spec.toml -o answers")

@@ -112,7 +112,7 @@ class Utilisation(Result):
     def ratio(self) -> Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used")]:
         """Demand divided by available stroke (..., n); above 1, the corner of the box is out of reach."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.demand == 0.0, 0.0, self.demand / (self.available + 0.0))  # not -0
+            return np.where(self.demand == 0.0, 0.0, self.demand / self.available)
 
     @property
     def reachable(self) -> Annotated[Array, VIEW]:
@@ -250,5 +250,5 @@ def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Num
     )
     half = stack([command.get(name, 0.0) for name in mapping.columns])
     demand = (magnitude(mapping.values) @ magnitude(half)[..., None])[..., 0]
-    available = np.minimum(-limits.low, limits.high)
+    available = np.minimum(0.0 - limits.low, limits.high)  # never -0
     return Utilisation(mapping.rows, dict(command), demand, available, provenance)

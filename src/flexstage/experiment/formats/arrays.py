@@ -122,7 +122,7 @@ class Contents:
         unit = plain_unit(" ".join(_texts(variable.attributes.get("units", ""))))
         if unit and unit not in units:
             what = f'wrong unit (got "{unit}", expected {" or ".join(units)})'
-            raise refuse(f"{self.where}: {variable.name}", what, "Use one of these units, or specify the rate (option rate)")
+            raise refuse(f"{self.where}: {variable.name}", what, "Use one of these units; the rate can also be specified (option rate)")
         return units.get(unit, 1.0)
 
     def texts(self, *names: str) -> tuple[str, ...]:

@@ -80,7 +80,7 @@ class FrontPoint:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """A stage that meets all requirements: the text of its design file and study, its goal [SI] and the binding requirements.
+    """A stage that meets all requirements: the text of its design file and study, its goal [SI] and the active requirements.
 
     `values` are the required quantities by the lumped model. `elastic` are these quantities with elastic bodies (flexibility estimated from
     outlines). `displaced` are the worst values at the corners of the required displacements. `verified` are values by finite elements with
@@ -89,7 +89,7 @@ class Answer:
 
     `manufactured` is the production yield by the lumped model, if requested: the fraction of stages that meet all requirements when their
     dimensions scatter. `crossover` is the lowest sensitivity crossover of the control loop with the default controller, if requested.
-    `front` are the Pareto-optimal designs, if there are two goals. `binding` contains the binding requirements and ends of variables'
+    `front` are the Pareto-optimal designs, if there are two goals. `binding` contains the active requirements and ends of variables'
     ranges with their sensitivities, before dimensions are rounded.
 
     `efficiency` is the fraction of the actuators' stroke energy that the stage uses (at most 1, see `bounds.efficiency`; `None` for coils).
@@ -183,9 +183,9 @@ def search(
 
 def _missed(answer: Answer, without: Collection[str] = ()) -> dict[str, str]:
     """Stricter limits of the lumped model if better models miss a requirement; some requirements may be left out."""
-    asked = {key: text for key, text in answer.stage.requirements.items() if key not in without}
+    required = {key: text for key, text in answer.stage.requirements.items() if key not in without}
     better = ({**answer.elastic, **answer.verified}, answer.displaced)
-    return missed_limits(replace(answer.stage, requirements=asked), answer.values, better)
+    return missed_limits(replace(answer.stage, requirements=required), answer.values, better)
 
 
 def _estimated(answer: Answer, spec: Specification, pair: CandidatePair, verify: Estimator | None) -> Answer:
