@@ -352,6 +352,18 @@ def test_a_relaxed_frequency_holds_with_better_models() -> None:
         assert isinstance(search(loads_specification(text.replace("5 kHz", f"{factor * relaxed.value:.9g} Hz")), pair), found)
 
 
+def test_strict_limits_of_other_requirements_do_not_exclude_a_design_that_meets_all() -> None:
+    """The ratio of elastic to rigid bodies is worst at the first optimum: the limit of the goal by this ratio would exclude the next."""
+    text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ x = "60 um" }').replace('"PSt 1000/10/150 VS18"', '"PiezoDrive SA070742"')
+    text = text.replace('"260 mm", "260 mm", "40 mm"', '"200 mm", "200 mm", "60 mm"').replace("500 Hz", "1060 Hz")
+    spec = loads_specification(text.replace('"30 g", size = ["30 mm", "30 mm", "5 mm"]', '"50 g", size = ["30 mm", "30 mm", "10 mm"]'))
+    pair = CandidatePair(architectures()["lever"], next(each for each in catalogue_actuators(spec)["piezo"] if "070742" in each.name))
+    answer = search(replace(spec, starts=1), pair)
+    assert isinstance(answer, Answer)
+    assert answer.rounds > 1
+    assert answer.elastic["frequency.1"] > 1060.0
+
+
 @pytest.mark.parametrize(("share", "excluded"), [(0.7, ()), (0.72, (False,)), (1.01, (True, False))])
 def test_a_bound_of_an_architecture_is_not_one_of_all_mechanisms(share: float, excluded: tuple[bool, ...]) -> None:
     """Carriages have one actuator for each axis: half of the energy. Only what all actuators together cannot reach is impossible."""
