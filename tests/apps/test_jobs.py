@@ -10,7 +10,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from flexstage.base.processes.jobs import CallError, Word, Worker, results
+from flexstage.base.processes.jobs import Word, Worker
+from flexstage.base.processes.pool import CallError, results
 
 DIES_ONCE = """
 import os, pathlib
@@ -44,7 +45,7 @@ class Executed:
 
 def test_a_call_over_which_a_process_died_is_given_to_another(tmp_path: Path) -> None:
     call = (Executed(DIES_ONCE.format(mark=str(tmp_path / "mark"))),)
-    assert list(results(operator.is_, [call, (None,)], 1)) == [((None,), False), (call, False)]
+    assert list(results(operator.is_, [call, (None,)], 1)) == [(call, False), ((None,), False)]
 
 
 def test_a_call_over_which_processes_die_again_and_again_is_given_up() -> None:

@@ -19,11 +19,11 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError, Finding
+from flexstage.base.processes import pool as processes
 from flexstage.base.processes.jobs import Worker
 from flexstage.base.processes.progress import Step
 from flexstage.base.units.scale import mm
 from flexstage.solid.fea.geometry.cad import cad
-from flexstage.solid.fea.jobs import remote
 from flexstage.solid.fea.jobs.memory import Counts, entries, freedoms, needed
 from flexstage.solid.fea.jobs.progress import Stage
 from flexstage.solid.fea.jobs.reducing import Reduce, fewest_elements
@@ -155,9 +155,9 @@ def test_findings_of_the_drawing_come_back_as_they_are(folder: Path) -> None:
 def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPatch, workers: int) -> None:
     """In one process after the other, and side by side: no more processes than workers."""
     outcomes: list[bytes] = []
-    started: list[remote.Worker] = []
-    plain = remote.Worker
-    monkeypatch.setattr(remote, "Worker", lambda *said: started.append(plain(*said)) or started[-1])
+    started: list[processes.Worker] = []
+    plain = processes.Worker
+    monkeypatch.setattr(processes, "Worker", lambda *said: started.append(plain(*said)) or started[-1])
     jobs = [job(rod()), job(replace(rod(), name="again"))]
     with Pool() as pool:
         for part in (jobs,) if workers == 2 else ([each] for each in jobs):  # the process stays from run to run
@@ -170,11 +170,15 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
 
 def test_a_process_that_has_ended_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
     codes: Iterator[int | None] = iter([-9, None])
-    monkeypatch.setattr(remote, "Worker", lambda *_: SimpleNamespace(process=SimpleNamespace(poll=lambda: next(codes)), end=lambda: None))
+
+    def worker(*_: object) -> SimpleNamespace:
+        return SimpleNamespace(process=SimpleNamespace(poll=lambda: next(codes)), end=lambda: None, kins=set())
+
+    monkeypatch.setattr(processes, "Worker", worker)
     with Pool() as pool:
-        first = pool.worker(job(rod()))
+        first = pool.worker("kin")
         pool.idle = [first]
-        assert pool.worker(job(rod())) is not first
+        assert pool.worker("kin") is not first
         assert not pool.idle
 
 
@@ -270,12 +274,12 @@ def test_a_process_tells_the_memory_it_has() -> None:
 def test_memory_that_processes_have_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch, has: float, room: float) -> None:
     """Ten are left on the machine, the one that asks has one already, another was granted six, of which it has some."""
 
-    def child(granted: float | None, resident: float) -> Any:
+    def child(granted: float, resident: float) -> Any:
         return SimpleNamespace(granted=granted, worker=SimpleNamespace(resident=lambda: resident))
 
-    monkeypatch.setattr(remote, "available", lambda: 10.0)
-    run: Any = remote._Run((), print, Limits(), print, Pool())
-    assert run._room(child(None, 1.0), [child(6.0, has)]) == room
+    monkeypatch.setattr(processes, "available", lambda: 10.0)
+    run: Any = processes.PoolRun(Pool(), (), 2)
+    assert run.room(child(0.0, 1.0), [child(6.0, has)]) == room
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4])

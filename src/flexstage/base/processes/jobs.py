@@ -20,9 +20,7 @@ import tempfile
 import threading
 import time
 import traceback
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
 from enum import Enum
 from pathlib import Path
 from typing import IO, Any, TypeAlias, cast
@@ -35,14 +33,13 @@ _MEMORY = {"GLIBC_TUNABLES": ":".join(f"glibc.malloc.{name}={value}" for name, v
 """GNU C library: large pages for large matrices, and up to a quarter of a gigabyte of freed memory is kept for reuse (sparse fronts)."""
 _MAIN = "from flexstage.base.processes.jobs import main; main()"
 _LENGTH = struct.Struct("<Q")
-_LIVES = 3
-"""Number of processes that may fail in one call."""
 
 
 class Word(Enum):
-    """Kind of a worker's message: intermediate, result, exception of the function, end of the process."""
+    """Kind of a worker's message: intermediate, request for memory, result, exception of the function, end of the process."""
 
     TOLD = "told"
+    REQUEST = "request"
     DONE = "done"
     FAILED = "failed"
     ENDED = "ended"
@@ -85,6 +82,8 @@ class Worker:
 
     def __init__(self, function: Callable[..., Any], heard: Heard | None = None) -> None:
         self.heard: Heard = queue.SimpleQueue() if heard is None else heard
+        self.kins = set[str]()
+        """Kinds of its earlier calls in a pool."""
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the process)
         try:
             self.process = subprocess.Popen(
@@ -159,54 +158,6 @@ class Worker:
         self.heard.put((self, Word.ENDED, self.process.wait()))
 
 
-@dataclass(frozen=True)
-class CallError(Exception):
-    """Failed call: its arguments, and its exception (`None` if its processes died repeatedly)."""
-
-    arguments: tuple[Any, ...]
-    error: Exception | None
-
-
-def results(function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], workers: int) -> Iterator[tuple[tuple[Any, ...], Any]]:
-    """Yield (arguments, result) of each call of `function(line, *arguments)` in order of completion, from `workers` processes.
-
-    Each process receives the function once, then the arguments of each call. If a process dies, another process repeats its call. Raises
-    `CallError` for a failed call. All processes are ended when the iteration ends.
-
-    >>> sorted(result for _, result in results(isinstance, [(Line,), (int,)], 2))
-    [False, True]
-    """
-    todo = deque((call, 0) for call in calls)
-    heard: Heard = queue.SimpleQueue()
-    busy: dict[Worker, tuple[tuple[Any, ...], int]] = {}
-
-    def give(worker: Worker) -> None:
-        busy[worker] = todo.popleft()
-        worker.ask(*busy[worker][0])
-
-    try:
-        while todo or busy:
-            while todo and len(busy) < workers:
-                give(Worker(function, heard))
-            worker, word, value = heard.get()
-            if worker not in busy or word is Word.TOLD:
-                continue
-            call, deaths = busy.pop(worker)
-            if word is Word.DONE and todo:
-                give(worker)
-            else:
-                worker.end()
-            if word is Word.DONE:
-                yield call, value
-            elif word is Word.FAILED or deaths + 1 == _LIVES:
-                raise CallError(call, value if word is Word.FAILED else None)
-            else:
-                todo.append((call, deaths + 1))
-    finally:
-        for worker in busy:
-            worker.end()
-
-
 # --- worker process ---
 
 
@@ -223,6 +174,11 @@ class Line:
     def say(self, word: Word, value: Any) -> None:
         """Send a message of the given kind to the caller."""
         _write(self._answers, pickle.dumps((word, value)))
+
+    def request_memory(self, needed: float) -> float | None:
+        """Wait for a permit for `needed` memory [bytes]. Returns `None`, or the available memory if there is never enough."""
+        self.say(Word.REQUEST, needed)
+        return self.hear()[0]
 
     def hear(self) -> Any:
         """Return the next message of the caller."""

@@ -15,7 +15,8 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
-from flexstage.base.processes.jobs import CallError, Line, results
+from flexstage.base.processes.jobs import Line
+from flexstage.base.processes.pool import CallError, results
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, RATIO, SHORT_TIME, TIME
 from flexstage.control.controllers.kinds import CONTROLLERS

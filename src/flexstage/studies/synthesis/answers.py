@@ -14,7 +14,8 @@ from typing import Annotated, Any
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
-from flexstage.base.processes.jobs import Line, cores, results
+from flexstage.base.processes.jobs import Line, cores
+from flexstage.base.processes.pool import results
 from flexstage.base.record import INNER
 from flexstage.base.storage.digest import digest
 from flexstage.base.storage.store import write

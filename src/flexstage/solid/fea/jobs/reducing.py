@@ -69,11 +69,6 @@ class StoredJob(Job):
         """Describe the result in one line."""
         raise NotImplementedError
 
-    @property
-    def mark(self) -> str:
-        """Key of the job."""
-        return self.key
-
 
 @dataclass(frozen=True, eq=False)
 class ComponentJob(StoredJob):

@@ -6,25 +6,23 @@ One loop in the caller's thread starts, watches and ends the processes, so that 
 from __future__ import annotations
 
 import errno
-import queue
 import signal
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field
-from typing import Any, Generic, Self, TypeVar
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.processes.jobs import Heard, Word, Worker, cores
+from flexstage.base.processes.jobs import cores
 from flexstage.base.processes.memory import available
+from flexstage.base.processes.pool import PoolRun, ProcessPool, RunningCall
 from flexstage.base.processes.progress import Progress, Step, seconds_left
-from flexstage.solid.fea.jobs.memory import Counts
 from flexstage.solid.fea.jobs.progress import Stage, fraction_done
 from flexstage.solid.fea.jobs.worker import Job, work
 
 _MOST_WORKERS = 2
-_PAUSE = 0.02
 _TELL_EVERY = 0.5
 
 
@@ -46,7 +44,7 @@ class Limits:
 AnyJob = TypeVar("AnyJob", bound=Job)
 
 
-class Pool:
+class Pool(ProcessPool):
     """Processes kept between groups of jobs, because loading the solver takes longer than a small job; `results` maps keys to results.
 
     The processes end when the context of the pool is left.
@@ -56,36 +54,8 @@ class Pool:
     """
 
     def __init__(self) -> None:
+        super().__init__(work)
         self.results: dict[str, Any] = {}
-        self.heard: Heard = queue.SimpleQueue()
-        self.idle: list[Worker] = []
-        self._latest: dict[str, Worker] = {}
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_error: object) -> None:
-        for worker in tuple(self.idle):
-            self.end(worker)
-
-    def worker(self, job: Job) -> Worker:
-        """Return an idle process (preferably after a similar job) or a new process for a job. Raises `OSError` if no process can start."""
-        for each in self.idle:
-            if each.process.poll() is not None:
-                self.end(each)
-        found = self._latest.get(job.kin)
-        if found is None or found not in self.idle:
-            found = self.idle[-1] if self.idle else Worker(work, self.heard)
-        self.idle = [each for each in self.idle if each is not found]
-        if job.kin:
-            self._latest[job.kin] = found
-        return found
-
-    def end(self, worker: Worker) -> None:
-        """End a process, or remove it if it has ended already."""
-        self.idle = [each for each in self.idle if each is not worker]
-        self._latest = {kin: each for kin, each in self._latest.items() if each is not worker}
-        worker.end()
 
 
 def work_all(
@@ -103,16 +73,10 @@ def work_all(
     >>> work_all([], print, Limits())
     """
     with nullcontext(pool) if pool is not None else Pool() as used:
-        run = _Run(tuple(jobs), done, limits, progress or _ignore, used)
-        try:
-            run.finish()
-        finally:
-            run.end()
+        run = _Run(used, tuple(jobs), limits, progress)
+        for job, found in run.results():
+            done(job, found)
     require(dict.fromkeys(run.findings))
-
-
-def _ignore(_step: Step) -> None:
-    """Ignore the progress."""
 
 
 def workers(limits: Limits) -> int:
@@ -124,213 +88,94 @@ def workers(limits: Limits) -> int:
     return limits.workers or min(_MOST_WORKERS, cores())
 
 
-@dataclass(eq=False)
-class _Child(Generic[AnyJob]):
-    """A running worker and its last report."""
+class _Run(PoolRun):
+    """The jobs of one call. Failures are collected; a mesh is attempted again after a crash or a timeout."""
 
-    job: AnyJob
-    attempt: int
-    begun: float
-    worker: Worker
-    stage: Stage = Stage.STARTING
-    fraction: float = 0.0
-    since: float = field(default_factory=time.monotonic)
-    counts: Counts | None = None
-    granted: float | None = None
-
-    def note(self, report: Counts | tuple[Stage, float]) -> None:
-        """Store its report."""
-        if isinstance(report, Counts):
-            self.counts, self.granted = report, None
-        else:
-            (self.stage, self.fraction), self.since = report, time.monotonic()
-
-    @property
-    def waits(self) -> bool:
-        """Whether it waits for permission."""
-        return self.counts is not None and self.granted is None
-
-    @property
-    def wanted(self) -> float:
-        """Memory it will need [bytes]."""
-        return 0.0 if self.counts is None else self.job.needed(self.counts)
-
-    def permit(self) -> None:
-        """Permit the assembly."""
-        self.granted, self.since = self.wanted, time.monotonic()
-        self.worker.ask()
-
-
-class _Run(Generic[AnyJob]):
-    """The jobs of one call: waiting, running, finished."""
-
-    def __init__(self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, Any], None], limits: Limits, progress: Progress, pool: Pool) -> None:
-        self.done, self.limits, self.progress, self.pool = done, limits, progress, pool
-        self.waiting = [(job, 0, time.monotonic()) for job in jobs]
-        self.children: list[_Child[AnyJob]] = []
+    def __init__(self, pool: Pool, jobs: Sequence[Job], limits: Limits, progress: Progress | None) -> None:
+        super().__init__(pool, jobs, workers(limits), limits.memory, limits.seconds)
+        self.limits, self.progress = limits, progress
         self.findings: list[Finding] = []
-        self.planned = {job.mark: job.seconds() for job in jobs}
-        self.finished: list[str] = []
-        self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
+        self.planned = sum(job.seconds() for job in jobs)
+        self.begun, self.reported, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
 
-    def finish(self) -> None:
-        """Run until no job waits or runs."""
-        while self.waiting or self.children:
-            while self.waiting and len(self.children) < workers(self.limits):
-                self._start(*self.waiting.pop(0))
-            self._hear()
-            for child in tuple(self.children):
-                self._check_time(child)
-            self._permit()
-            self._tell()
-
-    def end(self) -> None:
-        """End all processes."""
-        for child in self.children:
-            self.pool.end(child.worker)
-
-    def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
-        memory = available() if self.limits.memory is None else self.limits.memory
+    def start(self, call: Any, attempt: int, begun: float) -> None:
+        """Start a job with limits of memory and time."""
+        memory = available() if self.memory is None else self.memory
         try:
-            worker = self.pool.worker(job)
+            self.launch(call, attempt, begun, (call, attempt, memory, self.seconds), call.kin)
         except OSError as error:
-            raise _refuse_start(job.name, error) from error
-        self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
-        worker.ask(job, attempt, memory, self.limits.seconds)
+            raise _refuse_start(call.name, error) from error
 
-    def _hear(self) -> None:
-        """Receive the reports of the workers, waiting briefly."""
-        try:
-            worker, word, value = self.pool.heard.get(timeout=_PAUSE)
-        except queue.Empty:
-            return
-        for child in self.children:
-            if child.worker is worker:
-                self._take(child, word, value)
-                return
-        if word is Word.ENDED:
-            self.pool.end(worker)
+    def lost(self, running: RunningCall, cause: Exception | int) -> None:
+        """Attempt a mesh again after a crash or a timeout of one, else keep the errors of the job."""
+        stage, fraction = _stage(running)
+        attempt = round(fraction * running.call.attempts) + 1
+        repeatable = isinstance(cause, TimeoutError) or (isinstance(cause, int) and cause != 1)
+        in_time = super().time_limit(running) is None
+        if repeatable and in_time and stage is Stage.MESHING and attempt < running.call.attempts:
+            self.again(running, attempt)
+        else:
+            self.findings += _failure_findings(running, cause)
 
-    def _take(self, child: _Child[AnyJob], word: Word, value: Any) -> None:
-        match word:
-            case Word.TOLD:
-                child.note(value)
-            case Word.DONE:
-                self.done(child.job, value)
-                self._leave(child)
-                self.pool.idle.append(child.worker)
-            case Word.FAILED:
-                self._close(child, *_failure_findings(child, value))
-            case Word.ENDED:
-                if value == 1 or not self._again(child):
-                    self._close(child, _failure(child, value))
+    def time_limit(self, running: RunningCall) -> float | None:
+        """Return the time limit that an attempt at a mesh, or a job, exceeds."""
+        meshes = _stage(running)[0] is Stage.MESHING and running.requested is None
+        if meshes and time.monotonic() - running.since > self.limits.mesh_seconds:
+            return self.limits.mesh_seconds
+        return super().time_limit(running)
 
-    def _check_time(self, child: _Child[AnyJob]) -> None:
+    def check(self) -> None:
+        """Check times and memory, and report the progress."""
+        super().check()
+        text = ", ".join(f"{each.call.name}: {_stage(each)[0].value}" for each in self.running) or "done"
         now = time.monotonic()
-        if child.stage is Stage.MESHING and not child.waits and now - child.since > self.limits.mesh_seconds:
-            if not self._again(child):
-                self._close(child, _out_of_time(child, self.limits.mesh_seconds))
-        elif now - child.begun > self.limits.seconds:
-            self._close(child, _out_of_time(child, self.limits.seconds))
-
-    def _again(self, child: _Child[AnyJob]) -> bool:
-        """Start the next attempt at a mesh after a crash or a timeout of one."""
-        attempt = round(child.fraction * child.job.attempts) + 1
-        if child.stage is not Stage.MESHING or attempt >= child.job.attempts:
-            return False
-        self.children.remove(child)
-        self.pool.end(child.worker)
-        self.waiting.insert(0, (child.job, attempt, child.begun))
-        return True
-
-    def _close(self, child: _Child[AnyJob], *findings: Finding) -> None:
-        self.findings += findings
-        self._leave(child)
-        self.pool.end(child.worker)
-
-    def _leave(self, child: _Child[AnyJob]) -> None:
-        self.finished.append(child.job.mark)
-        self.children.remove(child)
-
-    def _permit(self) -> None:
-        """Permit jobs that fit next to the running ones; refuse those that do not fit alone."""
-        for child in tuple(self.children):
-            if child.counts is None or not child.waits:
-                continue
-            others = [each for each in self.children if each.granted is not None]
-            finding = child.job.refusal(child.counts, self._room(child, others))
-            if finding is None:
-                child.permit()
-            elif not others:
-                self._close(child, finding)
-
-    def _room(self, child: _Child[AnyJob], others: list[_Child[AnyJob]]) -> float:
-        if self.limits.memory is not None:
-            return self.limits.memory - sum(each.granted or 0.0 for each in others)
-        return available() + child.worker.resident() - sum(max(0.0, (each.granted or 0.0) - each.worker.resident()) for each in others)
-
-    def _tell(self) -> None:
-        text = ", ".join(f"{child.job.name}: {child.stage.value}" for child in self.children) or "done"
-        now = time.monotonic()
-        if text != self.text or now - self.told > _TELL_EVERY:
-            self.text, self.told = text, now
-            self.fraction = max(self.fraction, self._fraction_done())
+        if self.progress is not None and (text != self.text or now - self.reported > _TELL_EVERY):
+            left = sum(job.seconds() for job, _, _ in self.waiting)
+            left += sum(each.call.seconds() * (1.0 - fraction_done(*_stage(each))) for each in self.running)
+            self.text, self.reported, self.fraction = text, now, max(self.fraction, 1.0 - left / self.planned)
             self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
 
-    def _fraction_done(self) -> float:
-        """Completed fraction of the time of all jobs, by their usual durations."""
-        done = sum(self.planned[mark] for mark in self.finished)
-        done += sum(self.planned[child.job.mark] * fraction_done(child.stage, child.fraction) for child in self.children)
-        return done / sum(self.planned.values())
+
+def _stage(running: RunningCall) -> tuple[Stage, float]:
+    """The stage of a job that its process reported last, and its completed fraction."""
+    return running.told or (Stage.STARTING, 0.0)
 
 
-def _failure_findings(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:
-    """Errors of a job reported by its process."""
-    if isinstance(error, DesignError):
-        return error.findings
-    if isinstance(error, MemoryError):
-        return (_memory_full(child),)
-    if isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}:
-        return (_disk_full(child.job.name),)
-    return (_fault(child, f"{type(error).__name__}: {error}"),)
+def _failure_findings(running: RunningCall, cause: Exception | int) -> tuple[Finding, ...]:
+    """Errors of a job: those of its process, or the reason of its end."""
+    name, doing = running.call.name, _stage(running)[0].value
+    match cause:
+        case DesignError():
+            return cause.findings
+        case TimeoutError():
+            what = f"it was still {doing} after the {cause.args[0]:.4g} s allowed"
+            advice = "Use larger elements or a lower order, allow more time, or remove slivers, which can block the mesher"
+        case MemoryError():
+            what, advice = f"it exceeded its memory while {doing}", "Use larger elements or a lower order, or allow more memory"
+        case OSError(errno=errno.ENOSPC | errno.EDQUOT):
+            what = f"no space is left in the folder for temporary files, {tempfile.gettempdir()}"
+            advice = "Free space, or set the environment variable TMPDIR to a folder with more space"
+        case int() if cause != 1:
+            tried = f", with {running.attempt + 1} sizes of elements" if running.attempt else ""
+            what, advice = f"its process crashed while {doing} ({_reason(cause)}){tried}", _crash_advice(running, cause)
+        case _:
+            message = running.worker.last_words() if cause == 1 else f"{type(cause).__name__}: {cause}"
+            what = f"its process failed while {doing} ({message})"
+            advice = "Report this fault of flexstage or its solver with the design file; other element sizes may avoid it"
+    return (Finding(name, what, advice),)
 
 
-def _failure(child: _Child[AnyJob], code: int) -> Finding:
-    doing = child.stage.value
-    if code == 1:
-        return _fault(child, child.worker.last_words())
-    tried = f", with {child.attempt + 1} sizes of elements" if child.attempt else ""
-    advice = "Use elements of another size or order; if the crash recurs, report it with the design file"
-    if child.stage in {Stage.DRAWING, Stage.MESHING}:
-        advice = "Change the outline or the elements' sizes a little: slivers and nearly touching faces crash the mesher"
-    elif code == -signal.SIGKILL:
-        advice = "Use larger elements or a lower order, or a smaller --memory: the system probably ran out of memory"
-    return Finding(child.job.name, f"its process crashed while {doing} ({_reason(code)}){tried}", advice)
-
-
-def _fault(child: _Child[AnyJob], message: str) -> Finding:
-    advice = "Report this fault of flexstage or its solver with the design file; other element sizes may avoid it"
-    return Finding(child.job.name, f"its process failed while {child.stage.value} ({message})", advice)
+def _crash_advice(running: RunningCall, code: int) -> str:
+    if _stage(running)[0] in {Stage.DRAWING, Stage.MESHING}:
+        return "Change the outline or the elements' sizes a little: slivers and nearly touching faces crash the mesher"
+    if code == -signal.SIGKILL:
+        return "Use larger elements or a lower order, or a smaller --memory: the system probably ran out of memory"
+    return "Use elements of another size or order; if the crash recurs, report it with the design file"
 
 
 def _reason(code: int) -> str:
     names = {-number.value: number.name for number in signal.Signals}
     return names.get(code, f"exit code {code}")
-
-
-def _out_of_time(child: _Child[AnyJob], seconds: float) -> Finding:
-    advice = "Use larger elements or a lower order, allow more time, or remove slivers, which can block the mesher"
-    return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
-
-
-def _memory_full(child: _Child[AnyJob]) -> Finding:
-    advice = "Use larger elements or a lower order, or allow more memory"
-    return Finding(child.job.name, f"it exceeded its memory while {child.stage.value}", advice)
-
-
-def _disk_full(name: str) -> Finding:
-    advice = "Free space, or set the environment variable TMPDIR to a folder with more space"
-    return Finding(name, f"no space is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
 
 
 def _refuse_start(name: str, error: OSError) -> Exception:

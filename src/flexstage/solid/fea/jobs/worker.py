@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, require
 from flexstage.base.processes.jobs import Line, limit_memory
 from flexstage.solid.fea.jobs.install import require_solver
 from flexstage.solid.fea.jobs.memory import Counts
@@ -46,11 +46,6 @@ class Job(ABC):
         """The user's name for the component or hinge that the job computes."""
 
     @property
-    def mark(self) -> str:
-        """Identifier of the job among all jobs."""
-        return self.name
-
-    @property
     def kin(self) -> str:
         """Key of similar jobs, which are faster in succession in one process; empty if there are no similar jobs."""
         return ""
@@ -79,8 +74,8 @@ def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> A
     """
 
     def ask(counts: Counts) -> None:
-        line.tell(counts)
-        line.hear()
+        room = line.request_memory(job.needed(counts))
+        require(filter(None, [None if room is None else job.refusal(counts, room)]))
 
     def report(stage: Stage, fraction: float) -> None:
         line.tell((stage, fraction))

@@ -17,7 +17,8 @@ from flexstage.analysis.assessment.measures import platform_frequency
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.processes import memory
-from flexstage.base.processes.jobs import CallError, Line, cores, results
+from flexstage.base.processes.jobs import Line, cores
+from flexstage.base.processes.pool import CallError, results
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.storage.store import remove_leftovers
 from flexstage.studies.sweeps.definition import Study, name_findings
