@@ -11,7 +11,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.control.robustness.stability import require_stable
 from flexstage.control.serve.errors import Code, CommandError
-from flexstage.control.serve.recorder import POSITION, TABLES, VOLTAGE, Recorder
+from flexstage.control.serve.recorder import POSITION, TABLES, Recorder
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.study.choices import Compensation
@@ -161,9 +161,8 @@ class StageController:
         low, high = self._ends
         needed = self._gains @ (wanted / _MICRO)
         slack = 1e-9 * (self.high - self.low)
-        if np.any(wanted < self.low - slack) or np.any(wanted > self.high + slack):
-            raise CommandError(Code.POSITION_OUT_OF_LIMITS)
-        if np.any(needed < low - 1e-9 * np.abs(low)) or np.any(needed > high + 1e-9 * np.abs(high)):
+        bounds = ((wanted, self.low - slack, self.high + slack), (needed, low - 1e-9 * np.abs(low), high + 1e-9 * np.abs(high)))
+        if any(np.any((values < least) | (values > most)) for values, least, most in bounds):
             raise CommandError(Code.POSITION_OUT_OF_LIMITS)
 
     # --- time ---
@@ -176,7 +175,11 @@ class StageController:
         try:
             found = self.running.advance(wanted / _MICRO, self.held)
         except DesignError:
-            self._lose()
+            self.is_lost = True
+            for axis in range(len(self.axes)):
+                self.hold(axis, on=False)
+            for each in (self.target, self._wanted, self.position):
+                each[:] = 0.0
             return
         poses, amplifiers = found.pose * _MICRO, self.running.machine.amplifiers
         self.position, self.readings = poses[-1], found.readings[-1]
@@ -187,14 +190,7 @@ class StageController:
         self._off_target = np.where(np.any(off, axis=0), since, self._off_target + count)
         volts = amplifiers.bias + found.given / amplifiers.gain
         self.volts = volts[-1]
-        self.recorder.take(found, np.full(len(self.axes), _MICRO), volts)
-
-    def _lose(self) -> None:
-        for axis in range(len(self.axes)):
-            self.hold(axis, on=False)
-        for each in (self.target, self._wanted, self.position):
-            each[:] = 0.0
-        self.is_lost = True
+        self.recorder.take(found, _MICRO, volts)
 
     def _course(self, axis: int, count: int) -> Array:
         """Commanded trajectory of an axis [um, urad] for the next samples."""
@@ -222,9 +218,10 @@ class StageController:
         self.target[axis] = course[-1]
         return np.asarray(course)
 
-    def output_is_known(self, option: int) -> bool:
-        """Whether data exist for a recorder option; voltages exist only if all stacks have voltage data."""
-        return option != VOLTAGE or bool(np.all(np.isfinite(self.running.machine.amplifiers.gain)))
+    @property
+    def has_volts(self) -> bool:
+        """Whether all stacks have voltage data."""
+        return bool(np.all(np.isfinite(self.running.machine.amplifiers.gain)))
 
 
 def _travel(gains: Array, low: Array, high: Array) -> tuple[Array, Array]:

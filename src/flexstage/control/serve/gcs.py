@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -35,14 +34,6 @@ _OPTIONS = {
 _TRIGGERS = {0: "default setting", 1: "any command changing target position", 4: "immediately"}
 
 
-@dataclass(frozen=True)
-class Command:
-    """Command: the function that answers it, and a short description."""
-
-    answer: Callable[[Session, Sequence[str]], Iterable[str] | None]
-    meaning: str
-
-
 class Session:
     """Session of one client. Each client has its own error code; all clients share the stage."""
 
@@ -65,7 +56,7 @@ class Session:
         if command is None:
             return self._refuse(Code.UNKNOWN_COMMAND)
         try:
-            found = command.answer(self, words[1:])
+            found = command[0](self, words[1:])
         except CommandError as error:
             return self._refuse(error.code)
         return b"" if found is None else " \n".join(found).encode("latin-1", "replace") + b"\n"
@@ -73,6 +64,13 @@ class Session:
     def _refuse(self, code: Code) -> bytes:
         self.error = code
         return b""
+
+    def move(self, targets: dict[int, float]) -> None:
+        """Move axes to `targets`; a recorder that waits for a motion starts."""
+        self.stage.move(targets)
+        if self.trigger == 1:
+            self.trigger = 0
+            self.stage.recorder.start()
 
     # --- arguments ---
 
@@ -130,9 +128,10 @@ def _groups(words: Sequence[str], size: int) -> list[Sequence[str]]:
     return [words[start : start + size] for start in range(0, len(words), size)]
 
 
-def _nothing(words: Sequence[str]) -> None:
-    if words:
+def _exactly(words: Sequence[str], count: int) -> Sequence[str]:
+    if len(words) != count:
         raise CommandError(Code.NUMBER_OF_PARAMETERS)
+    return words
 
 
 def _shown(value: float) -> str:
@@ -143,13 +142,14 @@ def _shown(value: float) -> str:
 
 
 Answer: TypeAlias = Callable[[Session, Sequence[str]], Iterable[str] | None]
+"""Function that answers a command."""
 
 
 def _plain(lines: Callable[[StageController], Sequence[str]]) -> Answer:
     """Answer to a command without arguments."""
 
     def answer(session: Session, words: Sequence[str]) -> Sequence[str]:
-        _nothing(words)
+        _exactly(words, 0)
         return lines(session.stage)
 
     return answer
@@ -160,11 +160,11 @@ def _identify(stage: StageController) -> list[str]:
 
 
 def _help(_: StageController) -> list[str]:
-    return ["The following commands are valid:", *(f"{spelled(name)} {each.meaning}" for name, each in COMMANDS.items()), "end of help"]
+    return ["The following commands are valid:", *(f"{spelled(name)} {meaning}" for name, (_, meaning) in COMMANDS.items()), "end of help"]
 
 
 def _last_error(session: Session, words: Sequence[str]) -> list[str]:
-    _nothing(words)
+    _exactly(words, 0)
     found, session.error = session.error, Code.NO_ERROR
     return [str(int(found))]
 
@@ -176,7 +176,7 @@ def _names(session: Session, words: Sequence[str]) -> list[str]:
 
 
 def _parameter(session: Session, words: Sequence[str]) -> list[str]:
-    ((item, parameter),) = _one(words, 2)
+    item, parameter = _exactly(words, 2)
     try:
         known = int(parameter, 0) == _UPDATE
     except ValueError:
@@ -184,13 +184,6 @@ def _parameter(session: Session, words: Sequence[str]) -> list[str]:
     if item != "1" or not known:
         raise CommandError(Code.UNKNOWN_PARAMETER)
     return [f"1 {parameter}={session.stage.step:.9g}"]
-
-
-def _one(words: Sequence[str], size: int) -> list[Sequence[str]]:
-    found = _groups(words, size)
-    if len(found) != 1:
-        raise CommandError(Code.NUMBER_OF_PARAMETERS)
-    return found
 
 
 # --- motion ---
@@ -211,34 +204,28 @@ def _set_axes(change: Callable[[StageController, int, float], None], *, switches
     return answer
 
 
-def _of_axes(shown: Callable[[StageController, int], str]) -> Answer:
-    """Answer `axis=value` for each."""
-    return lambda session, words: [f"{session.stage.axes[axis]}={shown(session.stage, axis)}" for axis in session.axes(words)]
+def _of_axes(name: str, shown: Callable[[Any], object] = _shown) -> Answer:
+    """Answer `axis=value` for each, with values from the stage's attribute `name`."""
+    return lambda session, words: [
+        f"{session.stage.axes[axis]}={shown(getattr(session.stage, name)[axis])}" for axis in session.axes(words)
+    ]
 
 
 def _move(session: Session, words: Sequence[str]) -> None:
-    session.stage.move(session.pairs(words))
-    _trigger_by_motion(session)
+    session.move(session.pairs(words))
 
 
 def _move_by(session: Session, words: Sequence[str]) -> None:
-    session.stage.move({axis: session.stage.target[axis] + value for axis, value in session.pairs(words).items()})
-    _trigger_by_motion(session)
-
-
-def _trigger_by_motion(session: Session) -> None:
-    if session.trigger == 1:
-        session.trigger = 0
-        session.stage.recorder.start()
+    session.move({axis: session.stage.target[axis] + value for axis, value in session.pairs(words).items()})
 
 
 def _step(session: Session, words: Sequence[str]) -> None:
-    ((name, value),) = _one(words, 2)
+    name, value = _exactly(words, 2)
     session.stage.jump(session.axis(name), _number(value))
 
 
 def _stop(session: Session, words: Sequence[str]) -> None:
-    _nothing(words)
+    _exactly(words, 0)
     session.stage.stop()
     session.error = Code.STOPPED
 
@@ -288,15 +275,11 @@ def _require_idle(session: Session, number: int) -> None:
 
 
 def _wave_lengths(session: Session, words: Sequence[str]) -> list[str]:
-    asked = [_integer(number, 1, _TABLES) for number, _ in _lengths(words)] if words else range(1, _TABLES + 1)
-    return [f"{number} 1={len(session.stage.tables.get(number, ()))}" for number in asked]
-
-
-def _lengths(words: Sequence[str]) -> list[Sequence[str]]:
-    found = _groups(words, 2)
+    found = _groups(words, 2) if words else [(str(number), "1") for number in range(1, _TABLES + 1)]
     if any(parameter != "1" for _, parameter in found):
         raise CommandError(Code.UNKNOWN_PARAMETER)
-    return found
+    numbers = [_integer(number, 1, _TABLES) for number, _ in found]
+    return [f"{number} 1={len(session.stage.tables.get(number, ()))}" for number in numbers]
 
 
 def _clear_waves(session: Session, words: Sequence[str]) -> None:
@@ -383,10 +366,10 @@ def _configure(session: Session, words: Sequence[str]) -> None:
 def _recorded(session: Session, number: str, source: str, option: str) -> tuple[int, int, int]:
     """A table, and its recorded source for an option."""
     (table,), kind = _tables([number]), _number(option)
-    if kind not in _OPTIONS or not session.stage.output_is_known(int(kind)):
+    if kind not in _OPTIONS or (kind == recorder.VOLTAGE and not session.stage.has_volts):
         raise CommandError(Code.INVALID_RECORDER_OPTION)
     if kind == recorder.NOTHING:
-        return table, 0, recorder.NOTHING
+        return table, 0, int(kind)
     try:
         place = _place(source, len(session.stage.volts)) if kind == recorder.VOLTAGE else session.axis(source)
     except CommandError:
@@ -424,8 +407,7 @@ def _set_trigger(session: Session, words: Sequence[str]) -> None:
 
 
 def _set_record_rate(session: Session, words: Sequence[str]) -> None:
-    ((rate,),) = _one(words, 1)
-    session.stage.recorder.rate = _integer(rate, 1, 1_000_000)
+    session.stage.recorder.rate = _integer(_exactly(words, 1)[0], 1, 1_000_000)
 
 
 def _record(session: Session, words: Sequence[str]) -> list[str]:
@@ -446,12 +428,15 @@ def _array(words: Sequence[str], columns: Sequence[np.ndarray], names: Sequence[
     if first - 1 + count > there:
         raise CommandError(Code.NOT_ENOUGH_RECORDED)
     rows = np.stack([each[first - 1 : first - 1 + count] for each in columns], axis=-1)
-    head = {"TYPE": 1, "SEPARATOR": 32, "DIM": len(columns), "SAMPLE_TIME": f"{step:.9g}", "NDATA": count}
     return [
         "# REM flexstage",
         "#",
         "# VERSION = 1",
-        *(f"# {name} = {value}" for name, value in head.items()),
+        "# TYPE = 1",
+        "# SEPARATOR = 32",
+        f"# DIM = {len(columns)}",
+        f"# SAMPLE_TIME = {step:.9g}",
+        f"# NDATA = {count}",
         "#",
         *(f"# NAME{place} = {name}" for place, name in enumerate(names)),
         "#",
@@ -460,74 +445,72 @@ def _array(words: Sequence[str], columns: Sequence[np.ndarray], names: Sequence[
     ]
 
 
-COMMANDS: dict[str, Command] = {
-    "\x05": Command(lambda s, _: _bits(s.stage.moving), "which axes are moving"),
-    "\x07": Command(lambda _s, _: ["\xb1"], "whether the controller is ready"),
-    "\x09": Command(lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
-    "\x18": Command(_stop, "stop all axes"),
-    "*IDN?": Command(_plain(_identify), "identification"),
-    "CSV?": Command(_plain(lambda _: ["2.0"]), "syntax version"),
-    "DRC": Command(_configure, "set data recorder configuration"),
-    "DRC?": Command(
+COMMANDS: dict[str, tuple[Answer, str]] = {
+    "\x05": (lambda s, _: _bits(s.stage.moving), "which axes are moving"),
+    "\x07": (lambda _s, _: ["\xb1"], "whether the controller is ready"),
+    "\x09": (lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
+    "\x18": (_stop, "stop all axes"),
+    "*IDN?": (_plain(_identify), "identification"),
+    "CSV?": (_plain(lambda _: ["2.0"]), "syntax version"),
+    "DRC": (_configure, "set data recorder configuration"),
+    "DRC?": (
         lambda s, w: [f"{t + 1}={_source(s, t)} {s.stage.recorder.options[t]}" for t in _tables(w)],
         "get data recorder configuration",
     ),
-    "DRL?": Command(
+    "DRL?": (
         lambda s, w: [f"{t + 1}={len(s.stage.recorder.points[t])}" for t in _tables(w)],
         "get number of recorded points",
     ),
-    "DRR?": Command(_record, "get recorded data values"),
-    "DRT": Command(_set_trigger, "set data recorder trigger source"),
-    "DRT?": Command(lambda s, w: [f"{t + 1}={s.trigger} 0" for t in _tables(w)], "get data recorder trigger source"),
-    "ERR?": Command(_last_error, "get error number and clear it"),
-    "GWD?": Command(_wave_data, "get wave table data"),
-    "HDR?": Command(_plain(_recorder_options), "get all data recorder options"),
-    "HLP?": Command(_plain(_help), "get list of available commands"),
-    "HLT": Command(_halt, "halt all axes"),
-    "MOV": Command(_move, "set target position"),
-    "MOV?": Command(_of_axes(lambda s, a: _shown(s.target[a])), "get target position"),
-    "MVR": Command(_move_by, "set target relative to current target"),
-    "ONT?": Command(_of_axes(lambda s, a: str(int(s.on_target[a]))), "get on-target state"),
-    "POS?": Command(_of_axes(lambda s, a: _shown(s.position[a])), "get measured position"),
-    "PUN?": Command(_of_axes(lambda s, a: s.units[a]), "get position unit"),
-    "RTR": Command(_set_record_rate, "set number of samples per recorded point"),
-    "RTR?": Command(lambda s, _: [str(s.stage.recorder.rate)], "get number of samples per recorded point"),
-    "SAI?": Command(_names, "get names of the axes"),
-    "SPA?": Command(_parameter, "get a parameter: only the servo update time is available"),
-    "STE": Command(_step, "move an axis by a step, and start the data recorder"),
-    "STP": Command(_stop, "stop all axes"),
-    "SVO": Command(_set_axes(lambda s, axis, value: s.hold(axis, on=value == 1.0)), "switch the servo of an axis on (1) or off (0)"),
-    "SVO?": Command(_of_axes(lambda s, a: str(int(s.held[a]))), "get whether the servo of an axis is on"),
-    "TMN?": Command(_of_axes(lambda s, a: _shown(s.low[a])), "get minimum commandable position"),
-    "TMX?": Command(_of_axes(lambda s, a: _shown(s.high[a])), "get maximum commandable position"),
-    "TNR?": Command(lambda _s, _: [str(recorder.TABLES)], "get number of record tables"),
-    "TPC?": Command(lambda s, _: [str(len(s.stage.volts))], "get number of output channels"),
-    "TSC?": Command(lambda s, _: [str(len(s.stage.readings))], "get number of gauges"),
-    "TSP?": Command(_signals(lambda s: 1e6 * s.readings), "get positions read by the gauges"),
-    "TWG?": Command(lambda s, _: [str(len(s.stage.axes))], "get number of wave generators"),
-    "VCO": Command(_set_axes(lambda s, axis, value: s.is_ramped.__setitem__(axis, value == 1.0)), "switch velocity limit on or off"),
-    "VCO?": Command(_of_axes(lambda s, a: str(int(s.is_ramped[a]))), "get whether the velocity limit of an axis is on"),
-    "VEL": Command(_set_axes(lambda s, axis, value: s.velocity.__setitem__(axis, value), switches=False), "set closed-loop velocity"),
-    "VEL?": Command(_of_axes(lambda s, a: _shown(s.velocity[a])), "get closed-loop velocity"),
-    "VER?": Command(_plain(lambda _: [f"flexstage: {__version__}"]), "get versions"),
-    "VOL?": Command(_signals(lambda s: s.volts), "get voltage of output channel"),
-    "WAV": Command(_wave, "define a waveform in a wave table"),
-    "WAV?": Command(_wave_lengths, "get lengths of wave tables"),
-    "WCL": Command(_clear_waves, "clear wave table data"),
-    "WGC": Command(_set_generators("cycles", lambda word: _integer(word, 0, 2**31)), "set number of wave generator cycles"),
-    "WGC?": Command(_of_generators(lambda g: g.cycles), "get number of wave generator cycles"),
-    "WGO": Command(_generate, "start (1) or stop (0) a wave generator"),
-    "WGO?": Command(_of_generators(lambda g: int(g.at is not None)), "get whether a wave generator runs"),
-    "WOS": Command(_set_generators("offset", _number, idle=True), "set wave generator output offset"),
-    "WOS?": Command(_of_generators(lambda g: _shown(g.offset)), "get wave generator output offset"),
-    "WSL": Command(
-        _set_generators("table", lambda word: _integer(word, 0, _TABLES), idle=True), "select the wave table of a wave generator"
-    ),
-    "WSL?": Command(_of_generators(lambda g: g.table), "get the wave table of a wave generator"),
-    "WTR": Command(_set_wave_rate, "set number of samples per point of a wave table"),
-    "WTR?": Command(
+    "DRR?": (_record, "get recorded data values"),
+    "DRT": (_set_trigger, "set data recorder trigger source"),
+    "DRT?": (lambda s, w: [f"{t + 1}={s.trigger} 0" for t in _tables(w)], "get data recorder trigger source"),
+    "ERR?": (_last_error, "get error number and clear it"),
+    "GWD?": (_wave_data, "get wave table data"),
+    "HDR?": (_plain(_recorder_options), "get all data recorder options"),
+    "HLP?": (_plain(_help), "get list of available commands"),
+    "HLT": (_halt, "halt all axes"),
+    "MOV": (_move, "set target position"),
+    "MOV?": (_of_axes("target"), "get target position"),
+    "MVR": (_move_by, "set target relative to current target"),
+    "ONT?": (_of_axes("on_target", int), "get on-target state"),
+    "POS?": (_of_axes("position"), "get measured position"),
+    "PUN?": (_of_axes("units", str), "get position unit"),
+    "RTR": (_set_record_rate, "set number of samples per recorded point"),
+    "RTR?": (lambda s, _: [str(s.stage.recorder.rate)], "get number of samples per recorded point"),
+    "SAI?": (_names, "get names of the axes"),
+    "SPA?": (_parameter, "get a parameter: only the servo update time is available"),
+    "STE": (_step, "move an axis by a step, and start the data recorder"),
+    "STP": (_stop, "stop all axes"),
+    "SVO": (_set_axes(lambda s, axis, value: s.hold(axis, on=value == 1.0)), "switch the servo of an axis on (1) or off (0)"),
+    "SVO?": (_of_axes("held", int), "get whether the servo of an axis is on"),
+    "TMN?": (_of_axes("low"), "get minimum commandable position"),
+    "TMX?": (_of_axes("high"), "get maximum commandable position"),
+    "TNR?": (lambda _s, _: [str(recorder.TABLES)], "get number of record tables"),
+    "TPC?": (lambda s, _: [str(len(s.stage.volts))], "get number of output channels"),
+    "TSC?": (lambda s, _: [str(len(s.stage.readings))], "get number of gauges"),
+    "TSP?": (_signals(lambda s: 1e6 * s.readings), "get positions read by the gauges"),
+    "TWG?": (lambda s, _: [str(len(s.stage.axes))], "get number of wave generators"),
+    "VCO": (_set_axes(lambda s, axis, value: s.is_ramped.__setitem__(axis, value == 1.0)), "switch velocity limit on or off"),
+    "VCO?": (_of_axes("is_ramped", int), "get whether the velocity limit of an axis is on"),
+    "VEL": (_set_axes(lambda s, axis, value: s.velocity.__setitem__(axis, value), switches=False), "set closed-loop velocity"),
+    "VEL?": (_of_axes("velocity"), "get closed-loop velocity"),
+    "VER?": (_plain(lambda _: [f"flexstage: {__version__}"]), "get versions"),
+    "VOL?": (_signals(lambda s: s.volts), "get voltage of output channel"),
+    "WAV": (_wave, "define a waveform in a wave table"),
+    "WAV?": (_wave_lengths, "get lengths of wave tables"),
+    "WCL": (_clear_waves, "clear wave table data"),
+    "WGC": (_set_generators("cycles", lambda word: _integer(word, 0, 2**31)), "set number of wave generator cycles"),
+    "WGC?": (_of_generators(lambda g: g.cycles), "get number of wave generator cycles"),
+    "WGO": (_generate, "start (1) or stop (0) a wave generator"),
+    "WGO?": (_of_generators(lambda g: int(g.at is not None)), "get whether a wave generator runs"),
+    "WOS": (_set_generators("offset", _number, idle=True), "set wave generator output offset"),
+    "WOS?": (_of_generators(lambda g: _shown(g.offset)), "get wave generator output offset"),
+    "WSL": (_set_generators("table", lambda word: _integer(word, 0, _TABLES), idle=True), "select the wave table of a wave generator"),
+    "WSL?": (_of_generators(lambda g: g.table), "get the wave table of a wave generator"),
+    "WTR": (_set_wave_rate, "set number of samples per point of a wave table"),
+    "WTR?": (
         _of_generators(lambda g: f"{g.rate} {int(g.is_straight)}"),
         "get number of samples per point of a wave table",
     ),
 }
-"""All commands by mnemonic, or by character for single-character commands."""
+"""Answers and short descriptions of all commands, by mnemonic, or by character for single-character commands."""

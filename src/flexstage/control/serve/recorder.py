@@ -35,8 +35,8 @@ class Recorder:
         """Delete a table's points."""
         self.points[table] = np.empty(0)
 
-    def take(self, found: Series, scale: Array, volts: Array) -> None:
-        """Record points from the simulated samples `found`; `scale` (f,) converts each axis from SI units to the unit of the axis."""
+    def take(self, found: Series, scale: float, volts: Array) -> None:
+        """Record points from the simulated samples `found`; `scale` converts SI units to the units of the axes."""
         if not self._left:
             return
         rows = slice(self._skip, self._skip + self._left * self.rate, self.rate)

@@ -64,31 +64,26 @@ class ServedStage:
     """Stage controlled by clients. If not `paced`, the simulation runs as fast as possible while a client is connected."""
 
     def __init__(self, stage: StageController, port: int = PORT, *, paced: bool = True) -> None:
-        self.stage, self._port = stage, port
+        self.stage, self.port = stage, port
         self.pace = Pace(time.perf_counter() - stage.seconds) if paced else None
         """Pace of the simulation; None if the simulation runs as fast as possible."""
         self._server: asyncio.Server | None = None
-        self._running: asyncio.Task[None] | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
         self._clients: set[asyncio.Task[None]] = set()
-
-    @property
-    def port(self) -> int:
-        """TCP port in use."""
-        return self._port
 
     async def start(self) -> None:
         """Listen for clients, and start simulated time. Raises `DesignError` if the port is in use."""
         try:
-            self._server = await asyncio.start_server(self._client, HOST, self._port, limit=_READ)
+            self._server = await asyncio.start_server(self._client, HOST, self.port, limit=_READ)
         except OSError as error:
             what = f"cannot listen: {os.strerror(error.errno) if error.errno else error}"
-            raise refuse(f"--port {self._port}", what, "Use another port, or 0 for any free port") from None
-        self._port = self._server.sockets[0].getsockname()[1]
-        self._running = asyncio.create_task(self._race() if self.pace is None else self._follow(self.pace))
+            raise refuse(f"--port {self.port}", what, "Use another port, or 0 for any free port") from None
+        self.port = self._server.sockets[0].getsockname()[1]
+        self._tasks.add(asyncio.create_task(self._race() if self.pace is None else self._follow(self.pace)))
 
     async def stop(self) -> None:
         """Stop the server and all clients."""
-        for each in (*self._clients, *([] if self._running is None else [self._running])):
+        for each in (*self._clients, *self._tasks):
             each.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await each
