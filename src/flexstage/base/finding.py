@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, ClassVar
@@ -160,6 +160,15 @@ def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> 
     if similar or len(known) <= _SUGGESTIONS:
         return f"Use {list_choices(similar or known)}"
     return f"Use e.g. {list_choices(known[:3])}"
+
+
+def unknown_names(names: Iterable[str], known: Collection[str], what: str) -> Iterator[Finding]:
+    """Return a finding for each of the names that is not `known`.
+
+    >>> print(*unknown_names(["x", "q"], ["x", "y"], "axis"))
+    q: unknown axis. Use x or y.
+    """
+    return (Finding(name, f"unknown {what}", suggest_nearest(name, known)) for name in names if name not in known)
 
 
 def list_choices(names: Sequence[str]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks, stroke_limits
 from flexstage.base.arguments import UNLIMITED, CheckedFields, check_arguments
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, require, unknown_names
 from flexstage.base.number import Table
 from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import CURRENT, FREQUENCY, TIME, Bound
@@ -209,7 +209,7 @@ _Setting = TypeVar("_Setting", AmplifierSettings, GaugeSettings)
 def _by_name(given: _Setting | Mapping[str, _Setting] | None, names: tuple[str, ...], none: _Setting, kind: str) -> dict[str, _Setting]:
     if not isinstance(given, Mapping):
         return dict.fromkeys(names, none if given is None else given)
-    require(Finding(name, f"unknown {kind}", suggest_nearest(name, names)) for name in given if name not in names)
+    require(unknown_names(given, names, kind))
     return {name: given.get(name, none) for name in names}
 
 
@@ -223,7 +223,7 @@ def _amplifier(setting: AmplifierSettings, piezo: ChargedActuator, low: float, h
         bandwidth=float(setting.cutoff(np.array(capacitance))),
         noise_density=None if setting.noise_density is None else setting.noise_density * gain,
         step=0.0 if setting.bits is None else (high - low) / 2**setting.bits,
-        charge=None if setting.charge is None else _charge_drive(setting.charge, capacitance),
+        charge=setting.charge and _charge_drive(setting.charge, capacitance),
     )
 
 
@@ -235,12 +235,11 @@ def _charge_drive(held: ChargeHold, capacitance: float) -> ChargeDrive:
 def _thrust_amplifier(setting: AmplifierSettings, part: ThrustActuator) -> Amplifier:
     """Amplifier of a force actuator, in its input [A, N], limited to the peak input."""
     high = _largest_input(setting, part)
-    slew, cutoff = part.slew(high) if np.isfinite(high) else None, part.cutoff
     return Amplifier(
         low=-high,
         high=high,
-        slew=np.inf if slew is None else float(slew),
-        bandwidth=min(_first_stated(setting.bandwidth, np.inf), np.inf if cutoff is None else float(cutoff)),
+        slew=_first_stated(part.slew(high) if np.isfinite(high) else None, np.inf),
+        bandwidth=min(_first_stated(setting.bandwidth, np.inf), _first_stated(part.cutoff, np.inf)),
         noise_density=setting.current_noise,
         step=0.0 if setting.bits is None else 2.0 * high / 2**setting.bits,
     )
@@ -289,7 +288,7 @@ def _sensor(setting: GaugeSettings, gauge: Instrument) -> Sensor:
         noise_density=_first_stated(setting.noise_density, gauge.noise_density),
         resolution=_first_stated(setting.resolution, gauge.resolution, 0.0),
         filter_order=setting.filter_order,
-        filter_corner=np.inf if setting.filter_corner is None else setting.filter_corner,
+        filter_corner=_first_stated(setting.filter_corner, np.inf),
         half_range=0.5 * float(gauge.range),
     )
 

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest, unknown_names
 from flexstage.base.number import Array, Table
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.plant_models.coordinates import Coordinates, coordinates
-from flexstage.control.plant_models.electronics import Hardware, Sensor
+from flexstage.control.plant_models.electronics import Amplifier, Hardware, Sensor
 from flexstage.control.systems.sampling import discretise, first_order_hold
 from flexstage.control.systems.system import System, connect, from_state_space, lag, rename, select, static
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
@@ -186,8 +186,8 @@ def _with_relative(stage: System, model: LinearModel, twists: tuple[str, ...]) -
 
 def _with_sampling_chain(stage: System, states: tuple[str, ...], loop: Coordinates, given: Hardware) -> tuple[System, tuple[str, ...]]:
     """Amplifiers before the stage, lags and filters behind its gauges; the names of all states."""
-    amplifiers, lags = _amplifiers(loop, given), _lags(loop, given)
-    filters = [_filter(channel, given.sensors.get(channel.name, Sensor())) for channel in loop.readings()]
+    amplifiers = _lags(loop.commands(), given.amplifiers, loop.commands("stroke."))
+    lags, *filters = _gauge_chain(loop, given)
     others = tuple(channel for channel in stage.inputs if channel.name not in loop.actuators)
     body = rename(stage, {name: f"stroke.{name}" for name in loop.actuators})
     motions = tuple(name for name in stage.output_names if name not in loop.gauges)
@@ -203,14 +203,16 @@ def _slow(kind: str, names: tuple[str, ...], lags: System) -> list[str]:
     return [f"{kind}.{name}" for name, gain in zip(names, np.diag(lags.D), strict=True) if gain == 0.0]
 
 
-def _amplifiers(loop: Coordinates, given: Hardware) -> System:
-    bandwidths = np.array([given.amplifiers[name].bandwidth if name in given.amplifiers else np.inf for name in loop.actuators])
-    return lag(loop.commands(), bandwidths, loop.commands("stroke."))
+def _lags(inputs: tuple[Channel, ...], items: Mapping[str, Amplifier | Sensor], outputs: tuple[Channel, ...]) -> System:
+    bandwidths = np.array([items[each.name].bandwidth if each.name in items else np.inf for each in inputs])
+    return lag(inputs, bandwidths, outputs)
 
 
-def _lags(loop: Coordinates, given: Hardware) -> System:
-    bandwidths = np.array([given.sensors[name].bandwidth if name in given.sensors else np.inf for name in loop.gauges])
-    return lag(loop.readings(), bandwidths, loop.readings("lagged."))
+def _gauge_chain(loop: Coordinates, given: Hardware) -> list[System]:
+    """Lags of all gauges, and the filter of each."""
+    inputs = loop.readings()
+    filters = (_filter(channel, given.sensors.get(channel.name, Sensor())) for channel in inputs)
+    return [_lags(inputs, given.sensors, loop.readings("lagged.")), *filters]
 
 
 def _filter(read: Channel, sensor: Sensor) -> System:
@@ -239,21 +241,20 @@ def sensor_filter(given: Plant) -> System:
     >>> round(float(abs(found.transfer(np.array([1000.0]))[0, 0, 0])), 4)  # 0.7071 / (1 + (1/3)^2)^(1/2), the gauge has 3 kHz
     0.6708
     """
-    lags, inputs = _lags(given.coordinates, given.hardware), given.coordinates.readings()
-    filters = [_filter(channel, given.hardware.sensors.get(channel.name, Sensor())) for channel in inputs]
-    whole = connect([lags, *filters], {}, inputs, [f"gap.{name}" for name in given.gauges])
+    chain = _gauge_chain(given.coordinates, given.hardware)
+    whole = connect(chain, {}, given.coordinates.readings(), [f"gap.{name}" for name in given.gauges])
     old = {name: f"noise.{name}" for name in given.gauges} | {f"gap.{name}": f"filtered.{name}" for name in given.gauges}
     return rename(whole, old)
 
 
-def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tuple[str, ...]) -> list[Finding]:
+def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tuple[str, ...]) -> Iterator[Finding]:
     outputs = [channel.name for channel in model.outputs]
     both = set(loop.actuators) & set(loop.gauges)
-    found = [Finding(name, "an actuator and a gauge have this name", "Rename the actuator or the gauge") for name in sorted(both)]
+    for name in sorted(both):
+        yield Finding(name, "an actuator and a gauge have this name", "Rename the actuator or the gauge")
     for name in points:
         if f"{name}.x" not in outputs:
             places = {each.rpartition(".")[0] for each in outputs if each.endswith(".rz")}
-            found.append(Finding(name, "unknown point of the model", suggest_nearest(name, places)))
-    for kind, items, known in (("actuator", given.amplifiers, loop.actuators), ("gauge", given.sensors, loop.gauges)):
-        found += [Finding(name, f"unknown {kind}", suggest_nearest(name, known)) for name in items if name not in known]
-    return found
+            yield Finding(name, "unknown point of the model", suggest_nearest(name, places))
+    yield from unknown_names(given.amplifiers, loop.actuators, "actuator")
+    yield from unknown_names(given.sensors, loop.gauges, "gauge")

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, require, suggest_nearest, unknown_names
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.models.inverse import inverse_findings
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
@@ -156,7 +156,6 @@ def machine(
     loop, nothing = given.coordinates, np.full(len(given.actuators), np.nan)
     power = [given.hardware.amplifiers.get(name, Amplifier()) for name in given.actuators]
     senses = [given.hardware.sensors.get(name, Sensor()) for name in given.gauges]
-    low, high, slew, step = np.array([(each.low, each.high, each.slew, each.step) for each in power]).T
     plant = zero_order_hold(given)
     readings = tuple(f"gap.{name}" for name in given.gauges)
     kept = plant if motions is None else select(plant, plant.input_names, (*readings, *motions))
@@ -168,10 +167,7 @@ def machine(
         gauges=given.gauges,
         pose=loop.pose,
         amplifiers=Amplifiers(
-            low=low,
-            high=high,
-            slew=slew,
-            step=step,
+            *np.array([(each.low, each.high, each.slew, each.step) for each in power]).T,
             gain=nothing if electric is None else np.asarray(electric.gain, dtype=float),
             bias=nothing if electric is None else np.asarray(electric.bias, dtype=float),
         ),
@@ -214,9 +210,7 @@ def _findings(given: Machine) -> Iterator[Finding]:
         yield Finding("controller", "the command depends on applied.<actuator> of the same sample", "Connect this input to states only")
     known = [f"{kind}.{name}" for kind in ("error", "reference", "pose") for name in given.names]
     known += [f"applied.{name}" for name in given.actuators]
-    for name in controller.input_names:
-        if name not in known:
-            yield Finding(name, "unknown input of a controller", suggest_nearest(name, known))
+    yield from unknown_names(controller.input_names, known, "input of a controller")
     yield from _electric(given)
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from enum import IntEnum
 
 import numpy as np
 
 from flexstage.analysis.dynamics.random_response import Spectrum
-from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import refuse, require, unknown_names
 from flexstage.base.number import Array
 from flexstage.base.stream import generator
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
@@ -40,17 +40,14 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
     step = given.hardware.step
     if step is None:
         raise refuse("loop", "the loop is continuous, but noise series need samples", "Specify the sampling rate")
-    require(_findings(given, floor))
-    found = {}
     inputs = given.system.input_names
-    for name, spectrum in floor.items():
-        found[name] = series(spectrum, samples, step, (seed, Stream.FLOOR, inputs.index(name)))
-    for name, heard in given.heard.items():
-        found[name] = series(Spectrum(heard**2), samples, step, (seed, Stream.FLOOR, inputs.index(name)))
+    require(unknown_names(floor, [name for name in inputs if name.startswith("ground.")], "motion of the ground"))
+    outside = {**floor, **{name: Spectrum(heard**2) for name, heard in given.heard.items()}}
+    found = {name: series(spectrum, samples, step, (seed, Stream.FLOOR, inputs.index(name))) for name, spectrum in outside.items()}
     for number, name in enumerate(given.gauges):
         density = given.hardware.sensors.get(name, Sensor()).noise_density
         if density:
-            frequencies = np.fft.rfftfreq(_length(samples), step)
+            frequencies = np.fft.rfftfreq(2 * samples, step)
             sampled = gauge_noise(given, name, density).sweep(frequencies)
             aliased = 2.0 * step * np.sum(np.abs(sampled) ** 2, axis=(1, 2))
             found[f"noise.{name}"] = shape(aliased, samples, step, (seed, Stream.GAUGE, number))
@@ -70,7 +67,7 @@ def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) 
     >>> round(float(np.var(one)) / (2e-18 * 1000.0), 1)  # density times half the sampling rate
     1.0
     """
-    frequencies = np.fft.rfftfreq(_length(samples), step)
+    frequencies = np.fft.rfftfreq(2 * samples, step)
     density = np.concatenate([[0.0], spectrum.at(frequencies[1:])])
     return shape(density, samples, step, key)
 
@@ -86,17 +83,6 @@ def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Ar
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))
     True
     """
-    length = _length(samples)
+    length = 2 * samples
     white = generator(*key).standard_normal(length)
     return np.fft.irfft(np.fft.rfft(white) * np.sqrt(density / (2.0 * step)), length)[:samples]
-
-
-def _length(samples: int) -> int:
-    return 2 * samples
-
-
-def _findings(given: Plant, floor: Mapping[str, Spectrum]) -> Iterator[Finding]:
-    known = [name for name in given.system.input_names if name.startswith("ground.")]
-    for name in floor:
-        if name not in known:
-            yield Finding(name, "unknown motion of the ground", suggest_nearest(name, known))

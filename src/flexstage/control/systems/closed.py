@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest, unknown_names
 from flexstage.base.number import Array
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
@@ -198,33 +198,18 @@ def _states(given: Plant, plant: System, controller: System) -> tuple[str, ...]:
     return (*given.states, *registers, *(f"controller.{number + 1}" for number in range(len(controller.A))))
 
 
-def _findings(given: Plant, controller: System) -> list[Finding]:
-    found = []
-    if controller.step is None or given.hardware.step is None:
-        if controller.step is not given.hardware.step:
-            kinds = ["continuous" if step is None else f"sampled every {step:g} s" for step in (controller.step, given.hardware.step)]
-            found.append(
-                Finding(
-                    "controller",
-                    f"different sampling (got {kinds[0]}, expected {kinds[1]}, like the hardware)",
-                    "Use one sampling rate for both",
-                )
-            )
-    elif abs(controller.step / given.hardware.step - 1.0) > 1e-9:
-        what = f"different sampling (got {controller.step:g} s, expected {given.hardware.step:g} s, like the hardware)"
-        found.append(Finding("controller", what, "Use one sampling rate for both"))
+def _findings(given: Plant, controller: System) -> Iterator[Finding]:
+    own, other = controller.step, given.hardware.step
+    if own is None or other is None:
+        differs, kinds = own is not other, ["continuous" if step is None else f"sampled every {step:g} s" for step in (own, other)]
+    else:
+        differs, kinds = abs(own / other - 1.0) > 1e-9, [f"{own:g} s", f"{other:g} s"]
+    if differs:
+        what = f"different sampling (got {kinds[0]}, expected {kinds[1]}, like the hardware)"
+        yield Finding("controller", what, "Use one sampling rate for both")
     at = given.coordinates
     known = _names((*at.motions("error."), *at.motions("reference."), *at.motions("pose."), *at.commands("applied.")))
-    return [
-        *found,
-        *(
-            Finding(name, "unknown input of a controller", suggest_nearest(name, known))
-            for name in controller.input_names
-            if name not in known
-        ),
-        *(
-            Finding("controller", f"missing output {name}", "Add a command output for every actuator; it may be zero")
-            for name in _names(LoopBreak.COMMAND.channels(given))
-            if name not in controller.output_names
-        ),
-    ]
+    yield from unknown_names(controller.input_names, known, "input of a controller")
+    for name in _names(LoopBreak.COMMAND.channels(given)):
+        if name not in controller.output_names:
+            yield Finding("controller", f"missing output {name}", "Add a command output for every actuator; it may be zero")

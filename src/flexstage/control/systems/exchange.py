@@ -26,7 +26,7 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
     (['error_x'], ['command_B'], 0.0001)
     """
     control = _control()
-    names = [[_python_names(name) for name in group] for group in (system.input_names, system.output_names, states or ())]
+    names = [[name.replace(".", "_") for name in group] for group in (system.input_names, system.output_names, states or ())]
     for group in names:
         require(
             Finding(name, f"{group.count(name)} names become equal", "Rename all but one")
@@ -79,10 +79,6 @@ def _control() -> Any:
         return importlib.import_module("control")
     except ImportError:
         raise refuse("python-control", "not installed", "Install python-control: pip install 'flexstage[control]'") from None
-
-
-def _python_names(name: str) -> str:
-    return name.replace(".", "_")
 
 
 def _channels(given: tuple[Channel, ...] | None, system: Any, kind: str) -> tuple[Channel, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -69,11 +70,10 @@ def first_order_hold(system: System, step: float) -> System:
     >>> found.B.round(12).tolist(), found.D.round(12).tolist()  # the trapezoidal rule
     ([[0.1]], [[0.05]])
     """
-    require(_findings(system, step, 0.0))
+    require(_findings(system, step))
     size, width = system.B.shape
-    whole = np.zeros((size + 2 * width, size + 2 * width))
-    whole[:size, :size], whole[:size, size : size + width] = system.A * step, system.B * step
-    whole[size : size + width, size + width :] = np.eye(width)
+    upper = np.hstack([system.A * step, system.B * step])
+    whole = np.pad(scipy.linalg.block_diag(upper, np.eye(width)), ((0, width), (0, 0)))
     A, gamma, ramp = np.split(scipy.linalg.expm(whole)[:size], [size, size + width], axis=1)
     return replace(system, A=A, B=gamma - ramp + A @ ramp, D=system.D + system.C @ ramp, step=step)
 
@@ -89,8 +89,7 @@ def split_delay(samples: float) -> tuple[int, float]:
 def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
     """Matrices e^{At} and int_0^t e^{As} ds B."""
     size, width = system.B.shape
-    whole = np.zeros((size + width, size + width))
-    whole[:size, :size], whole[:size, size:] = system.A, system.B
+    whole = np.pad(np.hstack([system.A, system.B]), ((0, width), (0, 0)))
     found = scipy.linalg.expm(whole * time)
     return found[:size, :size], found[:size, size:]
 
@@ -108,7 +107,7 @@ def bilinear(system: System, step: float, prewarp: float | None = None) -> Syste
     >>> found.A.tolist(), found.D.round(12).tolist()  # the trapezoidal rule: half a step at once
     ([[1.0]], [[0.05]])
     """
-    require(_findings(system, step, 0.0))
+    require(_findings(system, step))
     if prewarp is not None and not 0.0 < prewarp < 0.5 / step:
         what = f"{prewarp:g} Hz is not between 0 and half the sampling rate, {0.5 / step:g} Hz"
         require([Finding("prewarp", what, "Choose a lower frequency, or sample faster")])
@@ -125,12 +124,10 @@ def bilinear(system: System, step: float, prewarp: float | None = None) -> Syste
     )
 
 
-def _findings(system: System, step: float, delay: float) -> list[Finding]:
-    found = []
+def _findings(system: System, step: float, delay: float = 0.0) -> Iterator[Finding]:
     if system.step is not None:
-        found.append(Finding("system", f"already sampled, every {system.step:g} s", "Use a continuous system"))
+        yield Finding("system", f"already sampled, every {system.step:g} s", "Use a continuous system")
     if not 0.0 < step < np.inf:
-        found.append(Finding("step", f"must be positive (got {step:g} s)", "Use a positive time"))
+        yield Finding("step", f"must be positive (got {step:g} s)", "Use a positive time")
     if not 0.0 <= delay < np.inf:
-        found.append(Finding("delay", f"must be 0 or more (got {delay:g} s)", "Use a time of 0 or more"))
-    return found
+        yield Finding("delay", f"must be 0 or more (got {delay:g} s)", "Use a time of 0 or more")

@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, require, suggest_nearest, unknown_names
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.units.quantity import TIME
@@ -211,7 +211,7 @@ def select(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> Sys
 
 def _indices(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[int]:
     names = tuple(names)
-    require(Finding(name, f"unknown {kind}", suggest_nearest(name, known)) for name in names if name not in known)
+    require(unknown_names(names, known, kind))
     return [known.index(name) for name in names]
 
 
@@ -246,9 +246,10 @@ def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple
     require(_link_findings(whole, links, inputs))
     wired = {name: links.get(name, {name: 1.0}) for name in whole.input_names}
     rows, external = whole.output_names, tuple(channel.name for channel in inputs)
-    feedback = np.array([[terms.get(name, 0.0) if name not in external else 0.0 for name in rows] for terms in wired.values()])
-    entry = np.array([[terms.get(name, 0.0) for name in external] for terms in wired.values()])
-    feedback, entry = feedback.reshape(len(wired), len(rows)), entry.reshape(len(wired), len(external))
+    feedback, entry = (
+        np.array([[terms.get(name, 0.0) for name in names] for terms in wired.values()]).reshape(len(wired), len(names))
+        for names in (rows, external)
+    )
     solve = np.eye(len(wired)) - feedback @ whole.D
     if np.min(np.abs(np.linalg.eigvals(solve)), initial=1.0) < _SINGULAR:
         require([Finding("loop", "an algebraic loop of gain 1 has no solution", "Add a delay or a lag to the loop")])
@@ -281,8 +282,7 @@ def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Chan
     external = tuple(channel.name for channel in inputs)
     sources = (*external, *whole.output_names)
     for name in links:
-        if name not in whole.input_names:
-            yield Finding(name, "unknown input", suggest_nearest(name, whole.input_names))
+        yield from unknown_names([name], whole.input_names, "input")
         for term in links[name]:
             if term not in sources:
                 yield Finding(f"link to {name}", f"unknown signal '{term}'", suggest_nearest(term, sources))
