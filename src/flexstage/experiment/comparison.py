@@ -28,6 +28,7 @@ from flexstage.experiment.identification.identified import (
     Identified,
     Widening,
 )
+from flexstage.experiment.records.record import names_of
 from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
 from flexstage.experiment.updating.gains import is_voltage, si_size
 from flexstage.mechanism.mechanism import Mechanism
@@ -367,7 +368,7 @@ def _residues(
     sizes = np.array([si_size(mechanism, experiment.inputs[index]) for index in columns])
     shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
     sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
-    rows = [[channel.name for channel in experiment.outputs].index(name) for name in sensors]
+    rows = [names_of(experiment.outputs).index(name) for name in sensors]
     seen = np.array([si_factor(experiment.outputs[row]) for row in rows])[:, None] * experiment.shapes[rows]
     seen = seen if doubt is None else doubt.put_right(seen)
     drives = (

@@ -19,8 +19,9 @@ from flexstage.experiment.identification.outputs.unrecorded import identify_deca
 from flexstage.experiment.progress import part
 from flexstage.experiment.records.health import RecordRequirements, responses_findings, usable_record
 from flexstage.experiment.records.options import FaultTolerance
-from flexstage.experiment.records.record import Record, Responses
+from flexstage.experiment.records.record import Record, Responses, names_of
 from flexstage.experiment.spectral.cross_spectra import Spectra, pool, spectra
+from flexstage.experiment.spectral.lines import in_band
 from flexstage.experiment.spectral.transfer import h2, multiple_coherence, spectral_ratio
 
 Measurement: TypeAlias = tuple[Record, ...] | Responses
@@ -57,8 +58,7 @@ class Identification:
         """Fraction of each output's power that all inputs explain, averaged over the band; null if spectra are absent."""
         if self.spectra is None or self.multiple is None:
             return None
-        low, high = self.found.band
-        inside = (self.spectra.frequencies >= low) & (self.spectra.frequencies <= high)
+        inside = in_band(self.spectra.frequencies, self.found.band)
         return {channel.name: float(np.mean(self.multiple[inside, row])) for row, channel in enumerate(self.spectra.outputs)}
 
 
@@ -114,7 +114,7 @@ def identification(test: Measurement, search: Search = _DEFAULT) -> Identificati
             parts.append(spectra(record, segments))
     with part(_SPECTRA, 1.0, "finding modes"):
         found = identify(list(test), search, parts)
-    names = {channel.name for channel in found.inputs}
+    names = names_of(found.inputs)
     known = pool([part.driven(names) for part in parts])
     second = h2(known) if len(known.outputs) >= len(known.inputs) else None
     return Identification(test, found, known, multiple_coherence(known), second, spectral_ratio(known))

@@ -13,7 +13,7 @@ from flexstage.base.record import VIEW
 from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.quantity import RATIO
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.records.record import Channel
+from flexstage.experiment.records.record import Channel, names_of
 from flexstage.experiment.records.unit import unit_problem
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.kinematics import Kinematics
@@ -60,7 +60,7 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     """
     rows = {channel.name: row for channel in found.outputs if (row := _row(kinematics, channel.name)) is not None}
     if not rows:
-        names = ", ".join(channel.name for channel in found.outputs[:8])
+        names = ", ".join(names_of(found.outputs[:8]))
         return _missing_shapes(f"no output of the record ({names}) has the name of a gauge or of a motion of the stage")
     chosen = [index for index, channel in enumerate(found.outputs) if channel.name in rows]
     weight = np.array([kinematics.first_length if _is_rotation(kinematics, name) else 1.0 for name in rows])
@@ -87,8 +87,7 @@ def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
     shapes = np.array([si_factor(channel) for channel in found.outputs])[:, None] * found.real_shapes
     if names is None:
         return shapes
-    known = [channel.name for channel in found.outputs]
-    return shapes[[known.index(name) for name in names]]
+    return shapes[[names_of(found.outputs).index(name) for name in names]]
 
 
 def si_factor(channel: Channel) -> float:

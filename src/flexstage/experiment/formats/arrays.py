@@ -19,7 +19,7 @@ from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
 from flexstage.experiment.records.clock import TIME_SCALES, Clock, clocked_record, determine_clock
 from flexstage.experiment.records.options import Arrays, Kind, Options, assign, matches, number_names
-from flexstage.experiment.records.record import Channel, ComputedSamples, Record, Responses, Role, Samples, rising_problem
+from flexstage.experiment.records.record import Channel, ComputedSamples, Record, Responses, Role, Samples, names_of, rising_problem
 from flexstage.experiment.records.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
@@ -149,7 +149,7 @@ def describe(what: Record | Responses) -> dict[str, Attribute]:
         said = {"format": RESPONSES_FORM, "window": what.window, "averages": float(what.averages or 0)}
         sides = {"output_": what.outputs, "input_": what.inputs}
     for side, channels in sides.items():
-        said[f"{side}names"] = tuple(channel.name for channel in channels)
+        said[f"{side}names"] = names_of(channels)
         said[f"{side}units"] = tuple(channel.unit for channel in channels)
     return said | {"name": what.name}
 
@@ -432,7 +432,7 @@ def _select(responses: Responses, options: Options) -> Responses:
     require(
         Finding(
             f"{responses.source}: {kind}",
-            f"none of {', '.join(each.name for each in known)} is called {', '.join(asked)}",
+            f"none of {', '.join(names_of(known))} is called {', '.join(asked)}",
             "Check the names",
         )
         for kind, known, asked in sides

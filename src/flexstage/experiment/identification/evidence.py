@@ -13,10 +13,10 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.experiment.identification.outputs.tones import Tone, remove_tones
 from flexstage.experiment.progress import part, report
-from flexstage.experiment.records.record import Channel, Record, Responses, rising_problem
+from flexstage.experiment.records.record import Channel, Record, Responses, names_of, rising_problem
 from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Window, pool, spectra
 from flexstage.experiment.spectral.growth import noise_growth
-from flexstage.experiment.spectral.lines import Cells, Lines, block_count, record_lines
+from flexstage.experiment.spectral.lines import Cells, Lines, block_count, in_band, record_lines
 from flexstage.experiment.spectral.smear import SMEARING, WindowLeakage
 from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise_density
 
@@ -78,7 +78,7 @@ class Evidence:
 
     def variance(self, low: float, high: float) -> Array:
         """Estimate the noise variance (p,) per line of the scaled outputs: the median over the lines from `low` to `high` in Hz."""
-        inside = (self.responses.frequencies >= low) & (self.responses.frequencies <= high)
+        inside = in_band(self.responses.frequencies, (low, high))
         chosen = self.density[inside] if np.any(inside) else self.density
         floor = 1e-10 * np.max(self.density, axis=0)
         return np.maximum(np.median(chosen, axis=0), floor) / self.output_scale**2
@@ -104,7 +104,7 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
     usable = {id(record): each for record, each in zip(made, known, strict=False) if each.segments == chosen}
     with part(1.0 / _PASSES, 2.0 / _PASSES):
         parts = _each_part(lambda record: usable.get(id(record)) or spectra(record, chosen), records)
-    together = pool([each.driven([channel.name for channel in each.inputs]) for each in parts])
+    together = pool([each.driven(names_of(each.inputs)) for each in parts])
     return replace(_of_records(records, together), tones=tuple(itertools.chain(*tones)))
 
 
@@ -125,7 +125,7 @@ def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
     is_single = known.averages <= len(known.inputs)
     drive = np.real(np.trace(known.xx, axis1=1, axis2=2))
     noise = _single_noise(known, responses) if is_single else noise_density(known)
-    names = [channel.name for channel in known.inputs]
+    names = names_of(known.inputs)
     size = _scale(inside.yy, records[0].rate)
     input_scale, output_scale = _divisor(_scale(inside.xx, records[0].rate)), _divisor(size)
 
@@ -347,7 +347,7 @@ def _findings(records: tuple[Record, ...]) -> list[Finding]:
             found.append(
                 Finding(where, f"it is sampled at {record.rate:g} Hz, the first record at {first.rate:g} Hz", "Sample all at the same rate")
             )
-        names, wanted = ({channel.name for channel in each.outputs} for each in (record, first))
+        names, wanted = (set(names_of(each.outputs)) for each in (record, first))
         if names != wanted:
             what = f"its outputs differ from the first record (got {', '.join(sorted(names))}, expected {', '.join(sorted(wanted))})"
             found.append(Finding(where, what, "Use the same output names in all records"))

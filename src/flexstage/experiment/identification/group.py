@@ -59,19 +59,6 @@ class BandModes:
     misfit: Array
     widening: Array
 
-    def select(self, chosen: Array) -> BandModes:
-        """Return a subset of the modes, by index."""
-        modal, spread = self.modal, self.deviations
-        return BandModes(
-            self.group,
-            self.band,
-            Modal(modal.poles[chosen], modal.participation[chosen], modal.shapes[:, chosen]),
-            Deviations(spread.frequencies[chosen], spread.damping[chosen], spread.shapes[:, chosen]),
-            self.significance[chosen],
-            self.misfit[chosen],
-            self.widening[chosen],
-        )
-
 
 def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: ModeSearch) -> BandModes | None:
     """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the noise variance found in the residual.

@@ -17,7 +17,7 @@ from flexstage.experiment.identification.cluster import Stabilisation
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.diagnosis.peaks import Peak
 from flexstage.experiment.identification.residues import modal_sum, remainder_sum
-from flexstage.experiment.records.record import Channel, Responses
+from flexstage.experiment.records.record import Channel, Responses, names_of
 
 FrequencyInterval: TypeAlias = Annotated[tuple[float, float], FREQUENCY, Heading("95 % interval")]
 DampingRatio: TypeAlias = Annotated[float, RATIO, Heading("damping ratio", digits=4, unit="%")]
@@ -177,7 +177,7 @@ class Identified(InNotebook):
     def shape_matrix(self) -> Annotated[Matrix, VIEW]:
         """Real shapes as a matrix: rows are outputs, columns modes."""
         names = tuple(str(index + 1) for index in range(len(self.frequencies)))
-        return Matrix(self.real_shapes, tuple(channel.name for channel in self.outputs), names, "1")
+        return Matrix(self.real_shapes, names_of(self.outputs), names, "1")
 
 
 def _interval(values: Array, deviations: Array) -> Array:

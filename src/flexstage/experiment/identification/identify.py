@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,10 +13,10 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.bands import TOGETHER, extents, sweeps
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
 from flexstage.experiment.identification.diagnosis.adequacy import Reach, few_lines
-from flexstage.experiment.identification.diagnosis.data_warnings import Modes, data_warnings
+from flexstage.experiment.identification.diagnosis.data_warnings import data_warnings
 from flexstage.experiment.identification.diagnosis.driven import Drive, measure_drives
 from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
-from flexstage.experiment.identification.diagnosis.peaks import ResidualResponses, peaks
+from flexstage.experiment.identification.diagnosis.peaks import peaks
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.group import ONCE_IN, BandModes, ModeSearch, RejectedResonance, fit_group, widen_by_parts
@@ -26,7 +26,7 @@ from flexstage.experiment.identification.lscf import lscf
 from flexstage.experiment.identification.residues import modal_sum, remainder
 from flexstage.experiment.records.record import Record, Responses
 from flexstage.experiment.spectral.cross_spectra import Segments, Spectra
-from flexstage.experiment.spectral.lines import edges, gather_cells
+from flexstage.experiment.spectral.lines import edges, gather_cells, in_band
 
 _LARGEST = 72
 _LONGEST = 40
@@ -120,8 +120,8 @@ def _identify_once(known: Evidence, search: Search) -> Identified:
         lost.clear()
         fitted = _fit_groups(known, candidates, band, search.highest_damping, lost, together=np.inf)
         drives = _measure_drives(known, fitted)
-    found, refused, share = _keep_driven(_widen_doubted(known, candidates, fitted), drives)
-    return _result(known, found, share, band=band, reach=reach, diagrams=diagrams, refused=refused, lost=lost)
+    found = _widen_doubted(known, candidates, fitted)
+    return _result(known, found, drives, band=band, reach=reach, diagrams=diagrams, lost=lost)
 
 
 def _band(known: Evidence, search: Search) -> tuple[float, float]:
@@ -131,8 +131,7 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
     asked = search.band
     if asked[0] < asked[1] and asked[0] < high and asked[1] > low:
         chosen = max(low, asked[0]), min(high, asked[1])
-        lines = known.responses.frequencies
-        require(few_lines(known, chosen, int(np.sum((lines >= chosen[0]) & (lines <= chosen[1])))))
+        require(few_lines(known, chosen, int(np.sum(in_band(known.responses.frequencies, chosen)))))
         return chosen
     what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are requested; the data reach from {low:.4g} to {high:.4g} Hz"
     require([Finding(known.where, what, "Request a band within this range, or record faster or longer")])
@@ -148,7 +147,7 @@ def _candidates(
     candidates: list[tuple[Candidate, ...]] = []
     inputs = known.responses.values.shape[2]
     for sweep in sweeps(*band):
-        inside = (known.responses.frequencies >= sweep.low) & (known.responses.frequencies <= sweep.high)
+        inside = in_band(known.responses.frequencies, (sweep.low, sweep.high))
         highest = min(_LONGEST, max(3, _LARGEST // inputs), int(np.sum(inside)) // (2 + 2 * inputs))
         if highest < 2:
             continue
@@ -211,54 +210,47 @@ def _measure_drives(known: Evidence, fitted: list[BandModes]) -> list[Drive]:
     return measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
 
 
-def _keep_driven(fitted: list[BandModes], drives: list[Drive]) -> tuple[list[BandModes], list[RejectedResonance], Array]:
-    """Modes excited by recorded inputs, other resonances, and the unexplained share of each mode's motion.
-
-    Rejected resonances stay in the fit, because they represent motion of other modes.
-    """
-    refused = [
-        RejectedResonance(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
-        for each, drive in zip(fitted, drives, strict=True)
-        for mode in np.flatnonzero(drive.chance > ONCE_IN)
-    ]
-    kept = [each.select(np.flatnonzero(drive.chance <= ONCE_IN)) for each, drive in zip(fitted, drives, strict=True)]
-    return kept, refused, np.concatenate([np.zeros(0), *(drive.elsewhere[drive.chance <= ONCE_IN] for drive in drives)])
-
-
 def _result(
     known: Evidence,
     found: list[BandModes],
-    share: Array,
+    drives: list[Drive],
     *,
     band: tuple[float, float],
     reach: Reach,
     diagrams: tuple[Stabilisation, ...],
-    refused: list[RejectedResonance],
     lost: list[RejectedResonance],
 ) -> Identified:
+    """Modes excited by recorded inputs; other resonances stay in the fit, because they represent motion of other modes."""
     inputs, outputs = len(known.input_scale), len(known.output_scale)
-    modal = _join([part.modal for part in found], inputs, outputs)
+    modal = Modal(
+        _join(part.modal.poles for part in found),
+        np.concatenate([np.zeros((0, inputs), dtype=complex), *(part.modal.participation[:, :inputs] for part in found)]),
+        np.concatenate([np.zeros((outputs, 0), dtype=complex), *(part.modal.shapes for part in found)], axis=1),
+    )
     widened = [part.deviations.widen(part.widening) for part in found]
-    spread = [np.concatenate([getattr(part, name) for part in widened] or [np.zeros(0)]) for name in ("frequencies", "damping")]
-    wide = np.concatenate([part.shapes for part in widened] or [np.zeros((outputs, 0))], axis=1)
-    strength = np.concatenate([part.significance for part in found] or [np.zeros(0)])
-    widening = np.concatenate([part.widening for part in found] or [np.zeros(0)])
-    order = np.argsort(np.abs(modal.poles))
+    wide = np.concatenate([np.zeros((outputs, 0)), *(part.shapes for part in widened)], axis=1)
+    widening, chance = _join(part.widening for part in found), _join(drive.chance for drive in drives)
+    driven = np.flatnonzero(chance <= ONCE_IN)
+    order = driven[np.argsort(np.abs(modal.poles[driven]))]
+    refused = [
+        RejectedResonance(complex(modal.poles[mode]), modal.shapes[:, mode], float(chance[mode]))
+        for mode in np.flatnonzero(chance > ONCE_IN)
+    ]
     poles, (shapes, participation, wide) = modal.poles[order], _restore_units(known, modal, wide, order)
-    inside = (known.responses.frequencies >= band[0]) & (known.responses.frequencies <= band[1])
+    inside = in_band(known.responses.frequencies, band)
     lines = known.responses.frequencies[inside]
     rest = known.responses.values[inside] - modal_sum(lines, 2.0 * np.pi * poles, shapes, participation)
-    close = close_groups(poles)
+    close, elsewhere = close_groups(poles), _join(drive.elsewhere for drive in drives)[order]
     return Identified(
         frequencies=np.abs(poles),
         damping=-np.real(poles) / np.abs(poles),
         shapes=shapes,
         participation=participation,
-        frequency_deviations=spread[0][order],
-        damping_deviations=spread[1][order],
+        frequency_deviations=_join(part.frequencies for part in widened)[order],
+        damping_deviations=_join(part.damping for part in widened)[order],
         shape_deviations=wide,
         widening=widening[order],
-        significance=strength[order],
+        significance=_join(part.significance for part in found)[order],
         outputs=known.responses.outputs,
         inputs=known.responses.inputs,
         close=close,
@@ -267,25 +259,19 @@ def _result(
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        data_warnings=data_warnings(known, Modes(poles, close, share[order], widening[order]), reach),
-        peaks=peaks(known, ResidualResponses(lines, rest, poles), refused, lost),
+        data_warnings=data_warnings(known, poles, close, elsewhere=elsewhere, widening=widening[order], reach=reach),
+        peaks=peaks(known, lines, rest, poles, refused=refused, lost=lost),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )
 
 
-def _join(parts: list[Modal], inputs: int, outputs: int) -> Modal:
-    return Modal(
-        np.concatenate([part.poles for part in parts] or [np.zeros(0, dtype=complex)]),
-        np.concatenate([part.participation[:, :inputs] for part in parts] or [np.zeros((0, inputs), dtype=complex)]),
-        np.concatenate([part.shapes for part in parts] or [np.zeros((outputs, 0), dtype=complex)], axis=1),
-    )
+def _join(parts: Iterable[Array]) -> Array:
+    return np.concatenate([np.zeros(0), *parts])
 
 
 def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> tuple[Array, Array, Array]:
     """Convert shapes (largest component 1), participations in rad/s, units of the channels, and deviations of the shapes."""
     shapes = modal.shapes * known.output_scale[:, None]
-    if not shapes.shape[1]:
-        return shapes, modal.participation / known.input_scale, wide
     scaled = np.argmax(np.abs(modal.shapes), axis=0)
     every = np.arange(shapes.shape[1])
     relative = shapes / shapes[scaled, every]

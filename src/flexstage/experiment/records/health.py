@@ -16,7 +16,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.experiment.records.numbers import Numbers, RecordNumbers, count_ends, explained_share, gather
 from flexstage.experiment.records.options import FaultTolerance, matches
-from flexstage.experiment.records.record import Channel, Record, Responses, Role, rising_problem
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, names_of, rising_problem
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
 _STILL, _STILL_SHARE = 32, 0.05
@@ -266,7 +266,7 @@ def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
 
 def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
     """Inputs explained by the others, one at a time, until the others are independent."""
-    names = [channel.name for channel in record.inputs]
+    names = names_of(record.inputs)
     alive = [number for number in range(len(names)) if np.real(found.input_spectra[:, number, number]).sum() > 0.0]
     while len(alive) > 1 and found.segments >= _SEGMENTS_AN_INPUT * len(alive):
         shares = _remove_bias(explained_share(found.input_spectra[:, alive][:, :, alive]), len(alive), found.segments)
@@ -291,7 +291,7 @@ def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iter
             advice = 'Specify it (options inputs, outputs), or accept the fault "names", which omits the channel'
             yield _fault(FaultTolerance.NAMES, where, channel.name, "its role is unknown", advice)
     if requirements.unrecorded and record.inputs:
-        what = f"the excitation is unrecorded, but the record has inputs: {', '.join(each.name for each in record.inputs)}"
+        what = f"the excitation is unrecorded, but the record has inputs: {', '.join(names_of(record.inputs))}"
         yield _fault(None, where, "", what, "Select only outputs (option channels), or omit the excitation")
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
         if not channels and not (requirements.unrecorded and kind == "input"):

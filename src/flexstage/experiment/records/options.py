@@ -10,7 +10,7 @@ from enum import Enum
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require, suggest_nearest
-from flexstage.experiment.records.record import Channel, Role
+from flexstage.experiment.records.record import Channel, Role, names_of
 from flexstage.experiment.records.unit import plain_unit
 
 INPUT_NAMES = (
@@ -120,7 +120,7 @@ def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[C
     ['output', 'input']
     """
     known = tuple(channels)
-    names = [channel.name for channel in known]
+    names = names_of(known)
     require([*_unknown_names(names, options, where), *_named_twice(names, options, where)])
     return tuple(replace(channel, role=_role(channel, options), unit=_unit(channel, options)) for channel in known)
 

@@ -142,7 +142,7 @@ class Record(InNotebook, CheckedFields):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all channels."""
-        return tuple(channel.name for channel in self.channels)
+        return names_of(self.channels)
 
     @property
     def inputs(self) -> Annotated[tuple[Channel, ...], VIEW]:
@@ -284,9 +284,7 @@ class Responses(InNotebook, CheckedFields):
 
     def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
         """Return the complex response (f,) of one output to one input at all frequencies."""
-        row = [channel.name for channel in self.outputs].index(output)
-        column = [channel.name for channel in self.inputs].index(input)
-        return self.values[:, row, column]
+        return self.values[:, names_of(self.outputs).index(output), names_of(self.inputs).index(input)]
 
 
 def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
@@ -314,6 +312,15 @@ def in_memory(channels: Iterable[Channel], rate: float, values: Annotated[Array,
     0.5
     """
     return Record(tuple(channels), float(rate), InMemory(np.asarray(values, dtype=float)))
+
+
+def names_of(channels: Iterable[Channel]) -> tuple[str, ...]:
+    """Return the names of channels.
+
+    >>> names_of([Channel("u"), Channel("y")])
+    ('u', 'y')
+    """
+    return tuple(channel.name for channel in channels)
 
 
 def rising_problem(frequencies: Array) -> str | None:

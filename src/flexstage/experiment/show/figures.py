@@ -9,7 +9,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.records.record import Channel, Responses
+from flexstage.experiment.records.record import Channel, Responses, names_of
+from flexstage.experiment.spectral.lines import in_band
 from flexstage.show.display import to_typography
 from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
@@ -34,7 +35,7 @@ def response_matrix_figure(found: Identified) -> Any:
     """
     rows, columns = found.outputs[:LARGEST], found.inputs[:LARGEST]
     band = focus(found)
-    inside = _inside(found.responses.frequencies, band)
+    inside = in_band(found.responses.frequencies, band)
     lines, values = found.responses.frequencies[inside], found.responses.values[inside]
     fine = _fine_lines(found, band)
     fitted = found.response(fine).values if len(found.frequencies) else None
@@ -59,7 +60,7 @@ def response_matrix_figure(found: Identified) -> Any:
 def density_figure(found: Identified) -> Any:
     """Plot the outputs' amplitude densities for a test without recorded inputs, with the identified modes, as a matplotlib Figure."""
     lines = found.responses.frequencies
-    inside = _inside(lines, focus(found))
+    inside = in_band(lines, focus(found))
     with style_context():
         figure = canvas(FULL, 2.6)
         axes = panels(figure, 1, 1, Margins(left=0.75, top=0.3))[0, 0]
@@ -149,12 +150,12 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
     >>> len(estimator_figure(h1(example_spectra()), [h2(example_spectra())], (1.0, 8.0)).axes)
     1
     """
-    inside = _inside(first.frequencies, band)
+    inside = in_band(first.frequencies, band)
     largest = np.argmax(np.sum(np.abs(first.values[inside]) ** 2, axis=0), axis=1)
 
     def draw(axes: Any, row: int) -> None:
         for index, each in enumerate((first, *others)):
-            own = _inside(each.frequencies, band)  # estimates may have other lines than the first
+            own = in_band(each.frequencies, band)  # estimates may have other lines than the first
             x, size = _extremes(each.frequencies[own], np.abs(each.values[own, row, largest[row]]))
             axes.semilogy(x, size, color=SERIES[index], linewidth=1.6 - 0.5 * index, label=each.name)
         _decades(axes)
@@ -186,7 +187,7 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
             axes.plot(*_means(own, multiple[:, row], band), color=INK, linewidth=1.3, label="multiple")
         axes.set_ylim(0.0, 1.04)
 
-    return _by_output([channel.name for channel in found.outputs], band, draw, 1.25)
+    return _by_output(names_of(found.outputs), band, draw, 1.25)
 
 
 def _by_output(titles: Sequence[str], band: tuple[float, float], draw: Callable[[Any, int], None], height: float) -> Any:
@@ -243,14 +244,14 @@ def stabilisation_figure(found: Identified) -> Any:
 def _poles(found: Identified, stable: int) -> Array:
     """Frequencies and orders (2, n) of the poles of one kind within the band."""
     every = np.concatenate([np.stack([each.frequencies, each.orders, each.stable]) for each in found.stabilisation], axis=1)
-    chosen = every[:2, (every[2] == stable) & _inside(every[0], focus(found))]
+    chosen = every[:2, (every[2] == stable) & in_band(every[0], focus(found))]
     return chosen[:, :: max(1, -(-chosen.shape[1] // _MANY))]
 
 
 def _envelope(axes: Any, found: Identified) -> None:
     """Draw the root sum of squares of all responses, each output over its own mean, on a separate axis."""
     data = found.responses
-    inside = _inside(data.frequencies, focus(found))
+    inside = in_band(data.frequencies, focus(found))
     power = np.sum(np.abs(data.values[inside]) ** 2, axis=2)
     total = np.sqrt(np.sum(power / np.maximum(np.mean(power, axis=0), 1e-300), axis=1))
     behind = axes.twinx()
@@ -262,17 +263,12 @@ def _envelope(axes: Any, found: Identified) -> None:
     axes.set_zorder(behind.get_zorder() + 1)
 
 
-def _inside(frequencies: Array, band: tuple[float, float]) -> Array:
-    return (frequencies >= band[0]) & (frequencies <= band[1])
-
-
 def _fine_lines(found: Identified, band: tuple[float, float]) -> Array:
     """Frequencies of the fit: evenly over the band, and finely within some half-widths of each mode."""
-    low, high = band
     offsets = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])
     around = (found.frequencies[:, None] * (1.0 + offsets * found.damping[:, None])).ravel()
-    lines = np.unique(np.concatenate([np.linspace(low, high, _FINE), around]))
-    return lines[(lines >= low) & (lines <= high)]
+    lines = np.unique(np.concatenate([np.linspace(*band, _FINE), around]))
+    return lines[in_band(lines, band)]
 
 
 def _extremes(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
@@ -287,5 +283,5 @@ def _extremes(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
 
 def _means(x: Array, y: Array, band: tuple[float, float]) -> tuple[Array, Array]:
     """Curve within a band, averaged over bins."""
-    parts = np.array_split(np.flatnonzero(_inside(x, band)), min(np.sum(_inside(x, band)), 2 * _BINS))
+    parts = np.array_split(np.flatnonzero(in_band(x, band)), min(np.sum(in_band(x, band)), 2 * _BINS))
     return np.array([np.mean(x[part]) for part in parts]), np.array([np.mean(y[part]) for part in parts])

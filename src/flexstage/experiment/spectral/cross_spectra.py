@@ -15,7 +15,8 @@ from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.experiment.progress import report
-from flexstage.experiment.records.record import Channel, Record
+from flexstage.experiment.records.record import Channel, Record, names_of
+from flexstage.experiment.spectral.lines import in_band
 
 BATCH = 2_000_000
 
@@ -82,7 +83,7 @@ class Spectra:
 
     def band(self, low: float, high: float) -> Spectra:
         """Return the spectra at the lines from `low` to `high` in Hz, both included."""
-        kept = (self.frequencies >= low) & (self.frequencies <= high)
+        kept = in_band(self.frequencies, (low, high))
         return replace(self, **{name: getattr(self, name)[kept] for name in ("frequencies", "xx", "yx", "yy")})
 
 
@@ -105,7 +106,7 @@ def spectra(record: Record, segments: Segments) -> Spectra:
     size = round(segments.seconds * record.rate)
     inputs, outputs = record.inputs, record.outputs
     require(_findings(record, size, outputs))
-    chosen = record.select([channel.name for channel in (*inputs, *outputs)])
+    chosen = record.select(names_of((*inputs, *outputs)))
     total, averages = _accumulate(chosen, size, segments)
     weight = segments.window.samples(size)
     density = total / (averages * record.rate * np.sum(weight**2))
@@ -196,7 +197,7 @@ def pool(parts: Sequence[Spectra]) -> Spectra:
     14
     """
     inputs = tuple({channel.name: channel for part in parts for channel in part.inputs}.values())
-    names = [channel.name for channel in inputs]
+    names = names_of(inputs)
     first = parts[0]
     count, outputs = len(inputs), len(first.outputs)
     xx = np.zeros((len(first.frequencies), count, count), dtype=complex)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.records.record import Record
+from flexstage.experiment.records.record import Record, names_of
 
 DEGREE = 7
 _FINENESS = 0.25
@@ -88,7 +88,7 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int
     >>> lines.frequencies.tolist(), abs(lines.drive[1, 0]).round(6).item()
     ([0.0, 1.0, 2.0, 3.0, 4.0], 0.353553)
     """
-    chosen = record.select([channel.name for channel in (*record.inputs, *record.outputs)])
+    chosen = record.select(names_of((*record.inputs, *record.outputs)))
     parts = block_count(record, least)
     size = record.length // parts
     for part in range(parts):
@@ -99,6 +99,15 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int
             place = (drive, column) if column < len(inputs) else (outputs, column - len(inputs))
             place[0][:, place[1]] = np.fft.rfft(values - np.mean(values)) / np.sqrt(size)
         yield Lines(np.fft.rfftfreq(size, 1.0 / record.rate), drive, outputs, (*inputs, first + part))
+
+
+def in_band(frequencies: Array, band: tuple[float, float]) -> Array:
+    """Return which of the `frequencies` lie within a band, limits included.
+
+    >>> in_band(np.array([1.0, 2.0, 3.0]), (2.0, 3.0)).tolist()
+    [False, True, True]
+    """
+    return (frequencies >= band[0]) & (frequencies <= band[1])
 
 
 def block_count(record: Record, least: int = 1) -> int:

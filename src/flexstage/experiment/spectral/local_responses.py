@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.diagnosis.peaks import PeakCause
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.outputs.tones import remove_tones
-from flexstage.experiment.records.record import Record
+from flexstage.experiment.records.record import Record, names_of
 from flexstage.experiment.spectral.lines import Lines, block_count, record_lines
 
 _DEGREE, _OVER = 2, 2
@@ -51,7 +51,7 @@ def local_responses(records: Sequence[Record], found: Identified) -> LocalRespon
     10.0
     """
     hums = any(peak.doubt is PeakCause.TONE for peak in found.peaks)
-    names = [each.name for each in (*found.inputs, *found.outputs)]
+    names = names_of((*found.inputs, *found.outputs))
     chosen = [record.select([each.name for each in record.channels if each.name in names]) for record in records]
     least = max(_least_reach(record) * block_count(record) / record.duration for record in chosen)
     centres, halves = _windows(found.poles / (2.0 * np.pi), found.band, least)

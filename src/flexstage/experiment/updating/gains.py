@@ -10,7 +10,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.records.record import Channel
+from flexstage.experiment.records.record import Channel, names_of
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantity
 from flexstage.experiment.virtual_rig.plan import drivable_actuators, input_factor
@@ -70,8 +70,8 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
     si = {channel.name: channel.unit for channel in (*model.outputs, *model.inputs)}
     sizes = {name: si_size(mechanism, channels[name], si[name]) for name in (*inputs, *outputs)}
     require(_unit_findings([channels[name] for name, size in sizes.items() if not np.isfinite(size)]))
-    rows = [[each.name for each in experiment.responses.outputs].index(name) for name in outputs]
-    columns = [[each.name for each in experiment.responses.inputs].index(name) for name in inputs]
+    rows = [names_of(experiment.responses.outputs).index(name) for name in outputs]
+    columns = [names_of(experiment.responses.inputs).index(name) for name in inputs]
     lines, values = _low_lines(experiment)
     fitted, deviations = _extrapolate_to_zero(lines, np.real(values[:, rows][:, :, columns]))
     scale = np.array([sizes[name] for name in outputs])[:, None] / np.array([sizes[name] for name in inputs])

@@ -9,6 +9,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.experiment.identification.evidence import Evidence
+from flexstage.experiment.spectral.lines import in_band
 
 _BEYOND_CHANCE = 1.5
 _FEWEST = 8
@@ -117,8 +118,7 @@ def no_mode_warning(known: Evidence, reach: Reach) -> str:
     )
     if known.coherence is None:
         return f"no mode exceeds the noise. {seen}"
-    inside = (known.responses.frequencies >= known.band[0]) & (known.responses.frequencies <= known.band[1])
-    mean = float(np.mean(known.coherence[inside]))
+    mean = float(np.mean(known.coherence[in_band(known.responses.frequencies, known.band)]))
     chance = known.responses.values.shape[2] / max(known.averages, 1.0)
     told = f"inputs explain {mean:.1%} of the outputs' power on average"
     if mean > _BEYOND_CHANCE * chance:

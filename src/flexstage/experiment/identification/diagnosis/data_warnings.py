@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from flexstage.base.number import Array
@@ -16,34 +14,25 @@ _MOST_ELSEWHERE = 0.5
 _MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 
 
-@dataclass(frozen=True, eq=False)
-class Modes:
-    """Identified modes: `poles` (k,) in Hz, indices of `close` modes by group, and inflation factors `widening` (k,) of intervals.
-
-    `elsewhere` (k,) is the fraction of each mode's motion that the recorded inputs do not explain.
-    """
-
-    poles: Array
-    close: tuple[tuple[int, ...], ...]
-    elsewhere: Array
-    widening: Array
-
-
 def _is_motion(channel: Channel) -> bool:
     """Whether a channel measures a velocity or an acceleration, the response to an unknown force."""
     return bool(channel.unit) and unit_problem(channel.unit) is None and any(same_dimension(channel.unit, unit) for unit in _MOTIONS)
 
 
-def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
+def data_warnings(
+    known: Evidence, poles: Array, close: tuple[tuple[int, ...], ...], *, elsewhere: Array, widening: Array, reach: Reach
+) -> tuple[str, ...]:
     """Collect warnings: few or coarse frequency lines, no identified mode, hidden repeated modes, unrecorded forces.
+
+    `poles` (k,) are in Hz; `close` are the indices of close modes by group. `elsewhere` (k,) is the fraction of each mode's motion that the
+    recorded inputs do not explain, and `widening` (k,) the inflation factor of the intervals.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record
-    >>> one = Modes(np.array([POLE]), (), np.zeros(1), np.ones(1))
-    >>> data_warnings(evidence(one_mode_record(), None), one, Reach(1.0, 26.0))[0][:20]
+    >>> known, reach = evidence(one_mode_record(), None), Reach(1.0, 26.0)
+    >>> data_warnings(known, np.array([POLE]), (), elsewhere=np.zeros(1), widening=np.ones(1), reach=reach)[0][:20]
     'only u was driven: o'
     """
-    poles, close = modes.poles, modes.close
     limits = (unsearched_band(known, reach), coarse_lines(known, poles), None if len(poles) else no_mode_warning(known, reach))
     found = [each for each in limits if each is not None]
     outputs, inputs = known.responses.values.shape[1:]
@@ -61,9 +50,9 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
             found.append(f"{min(inputs, outputs)} inputs or outputs cannot show further modes near {near} Hz. Add inputs and outputs.")
-    systematic = np.flatnonzero(modes.widening > 1.0)
+    systematic = np.flatnonzero(widening > 1.0)
     if len(systematic):
-        listed = ", ".join(f"{abs(poles[index]):.5g} Hz (intervals {modes.widening[index]:.2g} times wider)" for index in systematic)
+        listed = ", ".join(f"{abs(poles[index]):.5g} Hz (intervals {widening[index]:.2g} times wider)" for index in systematic)
         window = " The window of the responses is unknown; if a window was used, damping is too large." if known.unstated else ""
         found.append(
             f"the fit leaves a systematic residual near {listed}. The mode may be nonlinear, close to another, excited by unrecorded "
@@ -76,9 +65,9 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
             f"inputs that are motions: {listed}. The modes are those of the stage with this motion fixed, which is correct only for ground "
             "excitation. Record forces or strokes instead."
         )
-    shaken = np.flatnonzero(modes.elsewhere > _MOST_ELSEWHERE)
+    shaken = np.flatnonzero(elsewhere > _MOST_ELSEWHERE)
     if len(shaken):
-        listed = ", ".join(f"{abs(poles[index]):.5g} Hz ({1.0 - modes.elsewhere[index]:.0%})" for index in shaken)
+        listed = ", ".join(f"{abs(poles[index]):.5g} Hz ({1.0 - elsewhere[index]:.0%})" for index in shaken)
         found.append(
             f"recorded inputs explain less than half of the motion in modes at {listed}. Record all excitation, or increase the drive."
         )

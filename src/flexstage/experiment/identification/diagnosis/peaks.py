@@ -95,19 +95,12 @@ class Peak:
         return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
 
 
-@dataclass(frozen=True, eq=False)
-class ResidualResponses:
-    """Residual responses `rest` (f, p, m) at `lines` (f,) in Hz, after subtraction of the modes with `poles` (k,) in Hz."""
-
-    lines: Array
-    rest: Array
-    poles: Array
-
-
 def peaks(
-    known: Evidence, left: ResidualResponses, refused: Sequence[RejectedResonance], lost: Sequence[RejectedResonance]
+    known: Evidence, lines: Array, rest: Array, poles: Array, *, refused: Sequence[RejectedResonance], lost: Sequence[RejectedResonance]
 ) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
+
+    `rest` (f, p, m) are the responses at `lines` (f,) in Hz, after subtraction of the modes with `poles` (k,) in Hz.
 
     The list contains removed tones, `refused` resonances (not excited by the inputs) and `lost` resonances (not significant). A lost
     resonance is listed only if noise alone would give an equally strong peak with a probability below 1/1000. For an analyser's responses,
@@ -117,20 +110,20 @@ def peaks(
     >>> from flexstage.experiment.example import one_mode_record
     >>> known, nothing = evidence(one_mode_record(), None), np.zeros(0)
     >>> weak = RejectedResonance(-0.1 + 20.0j, np.ones(1), 1e-6)
-    >>> [peak.doubt.value for peak in peaks(known, ResidualResponses(nothing, nothing, nothing), (), (weak, weak))]
+    >>> [peak.doubt.value for peak in peaks(known, nothing, nothing, nothing, refused=(), lost=(weak, weak))]
     ['weak']
     """
     step = known.resolution
-    free = [tone for tone in known.tones if not (tone.fades and _is_listed(complex(0.0, tone.frequency), left.poles, (), step))]
+    free = [tone for tone in known.tones if not (tone.fades and _is_listed(complex(0.0, tone.frequency), poles, (), step))]
     found = tone_peaks(free, step, known.responses.outputs, known.output_scale)
     for doubt, group in ((PeakCause.UNDRIVEN, refused), (PeakCause.WEAK, sorted(lost, key=lambda each: each.chance))):
         for each in group:
-            modes = () if doubt is PeakCause.UNDRIVEN else left.poles
+            modes = () if doubt is PeakCause.UNDRIVEN else poles
             if (doubt is PeakCause.UNDRIVEN or each.chance < _NOTICED) and not _is_listed(each.pole, modes, found, step):
                 size = np.abs(each.shape)
                 seen = _names(known.responses.outputs, size > _PART * np.max(size))
                 found.append(Peak(abs(each.pole), doubt, each.chance, -2.0 * each.pole.real, step, seen))
-    for peak in narrow_peaks(known.responses, left) if known.stored else ():
+    for peak in narrow_peaks(known.responses, lines, rest, poles) if known.stored else ():
         if not _is_listed(complex(0.0, peak.frequency), (), found, peak.resolution):
             found.append(peak)
     return tuple(sorted(found, key=lambda each: each.frequency))
@@ -171,8 +164,8 @@ def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Chann
     ]
 
 
-def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
-    """List prominent single lines of the residual responses.
+def narrow_peaks(responses: Responses, lines: Array, rest: Array, poles: Array) -> list[Peak]:
+    """List prominent single lines of the residual responses `rest` (f, p, m) at `lines` (f,) in Hz; `poles` (k,) of the modes are in Hz.
 
     An F-test compares each line with a cubic through its neighbours, from the 2nd to the 12th on both sides. The false-alarm rate is one in
     twenty data sets. Lines within four half-widths or three lines of a mode belong to the mode and are omitted. Responses with unevenly
@@ -181,10 +174,9 @@ def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
     >>> rest = noise[0] + 1j * noise[1] + 30.0 * (lines == 60.0)[:, None, None]
     >>> here = Responses(lines, (Channel("S1"),), (Channel("u"),), rest)
-    >>> [(peak.frequency, peak.outputs) for peak in narrow_peaks(here, ResidualResponses(lines, rest, np.zeros(0)))]
+    >>> [(peak.frequency, peak.outputs) for peak in narrow_peaks(here, lines, rest, np.zeros(0))]
     [(60.0, ('S1',))]
     """
-    lines, rest, poles = left.lines, left.rest, left.poles
     step = float(responses.frequencies[1] - responses.frequencies[0])
     if len(lines) <= 2 * _REACH or not is_even(lines):
         return []

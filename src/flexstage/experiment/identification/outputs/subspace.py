@@ -15,7 +15,7 @@ from flexstage.experiment.identification.cluster import Candidate, Stabilisation
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.lscf import Poles
 from flexstage.experiment.progress import report
-from flexstage.experiment.records.record import Channel, Record, Responses, Role
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, names_of
 
 BLOCKS = 40
 """Number of blocks of a record; intervals follow from the scatter between blocks."""
@@ -69,7 +69,7 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[list
     mixing and decimation. R is divided by 1 - l/N, the fraction of the block's N samples available at lag l. Outputs are divided by their
     root mean squares. The density of the floor motion need only be smooth within each band.
     """
-    chosen = record.select([channel.name for channel in record.outputs])
+    chosen = record.select(names_of(record.outputs))
     size = record.length // BLOCKS
     divisions = [_divide(low, high, shift) for shift in _DIVISIONS]
     every = [sweep for division in divisions for sweep in division]

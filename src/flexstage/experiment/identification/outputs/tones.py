@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.experiment.progress import report
-from flexstage.experiment.records.record import ComputedSamples, Record, Samples
+from flexstage.experiment.records.record import ComputedSamples, Record, Samples, names_of
 from flexstage.experiment.spectral.lines import block_count
 
 _TAPERS = 8
@@ -92,7 +92,7 @@ def remove_tones(record: Record) -> tuple[Record, tuple[Tone, ...]]:
     >>> [round(tone.frequency, 2) for tone in found], bool(np.std(quiet.values - made.values) < 0.05), remove_tones(made)[1]
     ([15.03], True, ())
     """
-    inputs, outputs = (record.columns(channel.name for channel in each) for each in (record.inputs, record.outputs))
+    inputs, outputs = (record.columns(names_of(each)) for each in (record.inputs, record.outputs))
     parts = block_count(record)
     size = record.length // parts
     found: list[Tone] = []

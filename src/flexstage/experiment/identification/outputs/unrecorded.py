@@ -15,7 +15,8 @@ from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, close_groups, identify
 from flexstage.experiment.identification.outputs.subspace import BLOCKS, AmbientMode, band_covariances, searched_from, shaken_modes
 from flexstage.experiment.identification.outputs.tones import remove_tones
-from flexstage.experiment.records.record import Channel, Record, Responses, Role
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, names_of
+from flexstage.experiment.spectral.lines import in_band
 
 _EVIDENT, _WEAK = 6.1, 4.0
 """Standard deviations by which a mode's width must differ from zero: noise reaches the first once in 1e9."""
@@ -39,7 +40,7 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
     require(_floor_findings(records))
-    record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
+    record, tones = remove_tones(records[0].select(names_of(records[0].outputs)))
     resolution = BLOCKS / record.duration
     low = max(_LOWEST * resolution, search.band[0] if search.band else 0.0)
     high = min(_HIGHEST * record.rate, search.band[1] if search.band else np.inf)
@@ -113,10 +114,7 @@ def identify_decay(records: Sequence[Record], search: Search) -> Identified:
     size = min(record.length - start for record, start in zip(records, starts, strict=True))
     first = records[0]
     where = first.where
-    parts = [
-        record.select([each.name for each in first.outputs]).values[start : start + size]
-        for record, start in zip(records, starts, strict=True)
-    ]
+    parts = [record.select(names_of(first.outputs)).values[start : start + size] for record, start in zip(records, starts, strict=True)]
     lines = np.fft.rfftfreq(size, 1.0 / first.rate)
     values = np.stack([np.fft.rfft(part - np.mean(part[-max(1, size // 10) :], axis=0), axis=0) for part in parts], axis=2) / first.rate
     inside = lines <= _HIGHEST * first.rate
@@ -148,7 +146,7 @@ def _floor_findings(records: Sequence[Record]) -> list[Finding]:
 
 
 def _largest(record: Record) -> int:
-    values = record.select([each.name for each in record.outputs]).values
+    values = record.select(names_of(record.outputs)).values
     values = values - np.mean(values[-max(1, len(values) // 10) :], axis=0)
     size = np.sqrt(np.mean(values**2, axis=0))
     return int(np.argmax(np.sum((values / np.where(size > 0.0, size, 1.0)) ** 2, axis=1)))
@@ -163,7 +161,6 @@ def _result(record: Record, modes: Sequence[AmbientMode], density: Responses, ba
     poles = np.array([mode.pole for mode in modes], dtype=complex)
     sizes = np.abs(poles)
     shapes = np.array([mode.shape for mode in modes], dtype=complex).reshape(-1, len(outputs)).T
-    inside = (density.frequencies >= band[0]) & (density.frequencies <= band[1])
     return Identified(
         frequencies=sizes,
         damping=-np.real(poles) / sizes,
@@ -181,7 +178,7 @@ def _result(record: Record, modes: Sequence[AmbientMode], density: Responses, ba
         responses=density,
         stabilisation=(),
         band=band,
-        noise=np.median(np.abs(density.values[inside, :, 0]) ** 2, axis=0),
+        noise=np.median(np.abs(density.values[in_band(density.frequencies, band), :, 0]) ** 2, axis=0),
         data_warnings=(_UNSCALED, *_none(modes)),
         provenance=f"identified from outputs alone, in {record.where}: covariance-driven stochastic subspace",
     )
