@@ -38,6 +38,7 @@ from flexstage.mechanism.mechanism import (
     Mechanism,
     Probe,
     Stop,
+    Unit,
     every_link,
     posed,
 )
@@ -448,16 +449,23 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
     return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
 
 
-def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the bodies at a link's ends or ports; a body with `of` is replaced by its owner.
+def placed_links(mechanism: Mechanism) -> Iterator[tuple[str, Link, tuple[str, ...]]]:
+    """Yield name, link, and bodies at its ends or ports, of every link of the stage and of placed units.
 
-    For a link of a unit, `copy` is the unit's instance, and `own` are the names of the unit's bodies.
+    A body with `of` is replaced by its owner.
 
-    >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
-    >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})
-    ('ground', 'W/slide')
+    >>> strut = Link(("pad", "platform"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
+    >>> [joins for _, _, joins in placed_links(Mechanism("", bodies={"pad": Body(of="ground")}, links={"strut": strut}))]
+    [('ground', 'platform')]
     """
-    return tuple(owner_of(bodies, f"{copy}/{name}" if name in own else name) for name in link.bodies)
+    bodies, units = placed_bodies(mechanism), drawn_units(mechanism)
+    for name, link in mechanism.links.items():
+        yield name, link, tuple(owner_of(bodies, body) for body in link.bodies)
+    for copy, unit in unit_of_copy(mechanism).items():
+        drawn = units.get(unit, Unit())
+        for name, link in drawn.links.items():
+            ends = (f"{copy}/{body}" if body in drawn.bodies else body for body in link.bodies)
+            yield f"{copy}/{name}", link, tuple(owner_of(bodies, body) for body in ends)
 
 
 @dataclass(frozen=True, eq=False)
@@ -492,15 +500,6 @@ def _placed_solids(drawn: Iterable[_DrawnBody]) -> dict[str, PlacedSolid]:
     return pierce(dict(solid for item in drawn for solid in item.solids()))
 
 
-@dataclass(frozen=True, eq=False)
-class _DrawnLink:
-    """Link with its frame in the drawing frame; `owners` are the addresses of overrides by rising precedence."""
-
-    owners: tuple[str, ...]
-    link: Link
-    frame: Frame
-
-
 def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
     materials, drawn = mechanism.materials, drawn_units(mechanism)
     for name, body in mechanism.bodies.items():
@@ -530,15 +529,22 @@ def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Arr
 
 
 def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink | PlacedSuperelement]:
-    bodies = placed_bodies(mechanism)
-    for name, link in mechanism.links.items():
-        yield _placed_link(mechanism, _drawn_link(link, f"links.{name}"), identity(), name, joined(link, bodies))
-    units = drawn_units(mechanism)
-    links = {unit: {name: _unit_link(mechanism, unit, name, link) for name, link in item.links.items()} for unit, item in units.items()}
-    for copy, unit, frame in placed:
-        own = units[unit].bodies
-        for name, drawn in links[unit].items():
-            yield _placed_link(mechanism, drawn, frame, f"{copy}/{name}", joined(drawn.link, bodies, copy, own))
+    """Links in the stage's frame; `owners` are the addresses of overrides by rising precedence."""
+    instances = {copy: (unit, frame) for copy, unit, frame in placed}
+    for name, drawn, joins in placed_links(mechanism):
+        owners, outer = (f"links.{name}",), identity()
+        if name not in mechanism.links:
+            copy, _, own = name.rpartition("/")
+            unit, outer = instances[copy]
+            owners = tuple(f"{owner}/{own}" for owner in link_lineage(mechanism, unit, own))
+        link, part = apply_overrides(mechanism, drawn, (*owners, name))
+        frame = Frame(axes(link.direction, link.bends), stack(link.centre)).within(outer)
+        if ports_of(part):
+            whole = cast("Superelement", inner(part))
+            whole, frame = (whole.mirrored, frame.right_handed) if frame.mirrored else (whole, frame)
+            yield PlacedSuperelement(name, owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, joins))
+        else:
+            yield PlacedLink(name, owners[-1], (joins[0], joins[1]), link, part, _seen_from(mechanism, part, frame), frame)
 
 
 def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -597,29 +603,6 @@ def _inner_bodies(
             for name, body in composition.bodies.items():
                 own = f"{whole.name}.{name}"
                 yield _DrawnBody(own, body, mechanism.materials, own, whole.frame, whole.frame)
-
-
-def _drawn_link(link: Link, *owners: str) -> _DrawnLink:
-    return _DrawnLink(owners, link, _link_frame(link))
-
-
-def _unit_link(mechanism: Mechanism, unit: str, name: str, link: Link) -> _DrawnLink:
-    return _drawn_link(link, *(f"{owner}/{name}" for owner in link_lineage(mechanism, unit, name)))
-
-
-def _link_frame(link: Link) -> Frame:
-    return Frame(axes(link.direction, link.bends), stack(link.centre))
-
-
-def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: str, ends: Sequence[str]) -> PlacedLink | PlacedSuperelement:
-    link, part = apply_overrides(mechanism, drawn.link, (*drawn.owners, name))
-    frame = (drawn.frame if link is drawn.link else _link_frame(link)).within(outer)
-    if ports_of(part):
-        whole = cast("Superelement", inner(part))
-        whole, frame = (whole.mirrored, frame.right_handed) if frame.mirrored else (whole, frame)
-        return PlacedSuperelement(name, drawn.owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
-    first, second = ends
-    return PlacedLink(name, drawn.owners[-1], (first, second), link, part, _seen_from(mechanism, part, frame), frame)
 
 
 def _seen_from(mechanism: Mechanism, part: Part, frame: Frame) -> Material | None:

@@ -7,12 +7,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.mechanism.assembly.expand import joined, placed_bodies, unit_of_copy, unknown_names
+from flexstage.mechanism.assembly.expand import placed_bodies, placed_links, unit_of_copy, unknown_names
 from flexstage.mechanism.assembly.likeness import drawn_units, likeness_findings
 from flexstage.mechanism.assembly.pattern import copy_names
 from flexstage.mechanism.assembly.sight import gauge_findings
 from flexstage.mechanism.grammar.grammar import RESERVED
-from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NAMED, NOT_GROWING, PLATFORM, Link, Mechanism, Unit, every_body, posed
+from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NAMED, NOT_GROWING, PLATFORM, Link, Mechanism, every_body, posed
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.part import inner
@@ -145,21 +145,17 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
     for name, stop in mechanism.stops.items():
         if stop.body == stop.base:
             yield Finding(f"stops.{name}.base", f'equal to the body, "{stop.body}"', "Use the opposite body")
-    yield from gauge_findings(mechanism, {*mechanism.links, *_links_of_copies(mechanism)})
+    yield from gauge_findings(mechanism, {name for name, _, _ in placed_links(mechanism)})
     for name in mechanism.temperatures:
         yield from _check_known(f"temperatures.{name}", "body", name, {EVERYWHERE, *gauged})
 
 
 def _loops(mechanism: Mechanism) -> Iterator[Finding]:
     """Links of a unit that join a body of one instance: in that instance both ends may be equal."""
-    bodies, units = placed_bodies(mechanism), drawn_units(mechanism)
-    for copy, name in unit_of_copy(mechanism).items():
-        unit = units.get(name, Unit())
-        for link_name, link in unit.links.items():
-            first, *others = set(joined(link, bodies, copy, unit.bodies))
-            if not others and any("/" in body for body in link.bodies):
-                advice = "Draw that link in the stage, or in a separate unit"
-                yield Finding(f"{copy}/{link_name}.joins", f'in this instance both ends join "{first}"', advice)
+    for name, link, joins in placed_links(mechanism):
+        if name not in mechanism.links and len({*joins}) == 1 and any("/" in body for body in link.bodies):
+            advice = "Draw that link in the stage, or in a separate unit"
+            yield Finding(f"{name}.joins", f'in this instance both ends join "{joins[0]}"', advice)
 
 
 def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
@@ -198,9 +194,3 @@ def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
         elif parts.setdefault(name, link.part) != link.part:
             what = f'different parts in one circuit (got "{link.part}", and "{parts[name]}" in another link)'
             yield Finding(f"{where}.circuit", what, "Use one part for all links of a circuit")
-
-
-def _links_of_copies(mechanism: Mechanism) -> Iterator[str]:
-    units = drawn_units(mechanism)
-    for copy, unit in unit_of_copy(mechanism).items():
-        yield from (f"{copy}/{name}" for name in (units[unit].links if unit in units else ()))
