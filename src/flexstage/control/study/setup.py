@@ -15,7 +15,6 @@ from flexstage.base.units.quantity import (
     ANGLE,
     DISPLACEMENT,
     FORCE_NOISE,
-    FREQUENCY,
     JERK,
     NOISE_DENSITY,
     NOT_NEGATIVE,
@@ -41,11 +40,16 @@ from flexstage.control.study.choices import (
     StackKind,
 )
 from flexstage.control.study.hardware.amplifier_kinds import AMPLIFIERS
-from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup
+from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup, Frequency
 from flexstage.control.tuning.objective import TuningObjective
 from flexstage.mechanism.grammar.node import ChoiceNode
 from flexstage.models.theory import Model
 
+Length: TypeAlias = Annotated[float, DISPLACEMENT, POSITIVE]
+Speed: TypeAlias = Annotated[float, SPEED, POSITIVE]
+Ratio: TypeAlias = Annotated[float, RATIO, POSITIVE]
+Duration: TypeAlias = Annotated[float, TIME, POSITIVE]
+Time: TypeAlias = Annotated[float, TIME, NOT_NEGATIVE]
 _PEAK = Bound(low=1.0, open_low=True)
 _SHARE = Bound(low=0.0, high=0.5, open_low=True)
 _OVER, _SPREAD = Bound(low=0.02, high=1.0), Bound(low=0.0, high=0.3)
@@ -90,9 +94,9 @@ class GaugeSetup(CheckedFields):
 
     noise: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
     resolution: Annotated[float, DISPLACEMENT, NOT_NEGATIVE] | None = None
-    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    bandwidth: Frequency | None = None
     filter_order: Annotated[int, Bound(low=0.0, high=20.0)] = 0
-    filter_corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    filter_corner: Frequency | None = None
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,7 @@ class VibrationSetup(CheckedFields):
     """
 
     criterion: Criterion | None = None
-    frequencies: tuple[Annotated[float, FREQUENCY, POSITIVE], ...] = ()
+    frequencies: tuple[Frequency, ...] = ()
     acceleration: tuple[Annotated[float, ACCELERATION_NOISE, NOT_NEGATIVE], ...] = ()
     velocity: tuple[Annotated[float, VELOCITY_NOISE, NOT_NEGATIVE], ...] = ()
     displacement: tuple[Annotated[float, NOISE_DENSITY, NOT_NEGATIVE], ...] = ()
@@ -123,18 +127,18 @@ class Floor(CheckedFields):
 class NotchSetup(CheckedFields):
     """Notch filter: `frequency`, `depth` (gain at that frequency), and `damping` of its poles, which sets the width."""
 
-    frequency: Annotated[float, FREQUENCY, POSITIVE]
+    frequency: Frequency
     depth: Annotated[float, RATIO, NOT_NEGATIVE] | None = None
-    damping: Annotated[float, RATIO, POSITIVE] | None = None
+    damping: Ratio | None = None
 
 
 @dataclass(frozen=True)
 class PrefilterSetup(CheckedFields):
     """Second-order low-pass prefilter of the reference, with `frequency` and `damping`; its gain falls less steeply above `lead`."""
 
-    frequency: Annotated[float, FREQUENCY, POSITIVE]
-    damping: Annotated[float, RATIO, POSITIVE] = 1.0
-    lead: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    frequency: Frequency
+    damping: Ratio = 1.0
+    lead: Frequency | None = None
 
 
 @dataclass(frozen=True)
@@ -148,8 +152,8 @@ class LoopNumbers(CheckedFields):
     axes: tuple[str, ...]
     proportional: Annotated[float, RATIO] | None = None
     integral: Annotated[float, RATE, NOT_NEGATIVE] | None = None
-    derivative: Annotated[float, TIME, NOT_NEGATIVE] | None = None
-    filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    derivative: Time | None = None
+    filter: Frequency | None = None
     notches: tuple[NotchSetup, ...] = ()
     prefilter: PrefilterSetup | None = None
 
@@ -165,10 +169,10 @@ class GoalSetup(CheckedFields):
     """
 
     objective: TuningObjective = TuningObjective.BALANCE
-    rejection: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    settling: Annotated[float, TIME, POSITIVE] | None = None
+    rejection: Frequency | None = None
+    settling: Duration | None = None
     overshoot: Annotated[float, RATIO, _OVER] = 0.2
-    delay_margin: Annotated[float, TIME, POSITIVE] | None = None
+    delay_margin: Duration | None = None
     spread: Annotated[float, RATIO, _SPREAD] = 0.02
     gain: Annotated[float, RATIO, _SPREAD] = 0.0
     prefilter: bool = False
@@ -189,12 +193,12 @@ class ControllerSetup(CheckedFields):
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
     coordinates: Axes = Axes.PLATFORM
-    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    bandwidth: Frequency | None = None
     sensitivity: Annotated[float, RATIO, _PEAK] | None = None
     proportional: Annotated[float, RATIO] | None = None
     integral: Annotated[float, RATE, NOT_NEGATIVE] | None = None
-    derivative: Annotated[float, TIME, NOT_NEGATIVE] | None = None
-    filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    derivative: Time | None = None
+    filter: Frequency | None = None
     notching: Notching = Notching.AUTOMATIC
     notches: tuple[NotchSetup, ...] = ()
     loops: tuple[LoopNumbers, ...] = ()
@@ -233,13 +237,13 @@ class DampingSetup(CheckedFields):
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
     gain: Annotated[float, RATE, POSITIVE] | None = None
-    corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    corner: Frequency | None = None
     order: Annotated[int, Bound(low=1.0, high=2.0)] = 2
     gauges: tuple[str, ...] = ()
     noise: Annotated[float, FORCE_NOISE, NOT_NEGATIVE] | None = None
-    lag: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    delay: Annotated[float, TIME, NOT_NEGATIVE] | None = None
-    rate: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    lag: Frequency | None = None
+    delay: Time | None = None
+    rate: Frequency | None = None
 
 
 @dataclass(frozen=True)
@@ -255,7 +259,7 @@ class FollowSetup(CheckedFields):
     passes: Annotated[int, Bound(low=1.0, high=50.0)] = 10
     gain: Annotated[float, RATIO, _DAMPED] = 0.6
     spread: Annotated[float, RATIO, _SPREAD] = 0.02
-    frequency: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    frequency: Frequency | None = None
     damping: Annotated[float, RATIO, _SWINGING] = 0.0
 
 
@@ -286,7 +290,7 @@ class StepMotion(CheckedFields):
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
 
     amplitude: AxisAmplitudes = field(default_factory=AxisAmplitudes)
-    speed: Annotated[float, SPEED, POSITIVE] | None = None
+    speed: Speed | None = None
     acceleration: Annotated[float, ACCELERATION, POSITIVE] | None = None
     jerk: Annotated[float, JERK, POSITIVE] | None = None
 
@@ -301,10 +305,10 @@ class RasterMotion(CheckedFields):
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "raster")
 
-    length: Annotated[float, DISPLACEMENT, POSITIVE] = 10e-6
-    pitch: Annotated[float, DISPLACEMENT, POSITIVE] = 1e-6
+    length: Length = 10e-6
+    pitch: Length = 1e-6
     lines: Annotated[int, Bound(low=1.0, high=1e5)] = 6
-    speed: Annotated[float, SPEED, POSITIVE] = 0.1e-3
+    speed: Speed = 0.1e-3
     acceleration: Annotated[float, ACCELERATION, POSITIVE] = 5e-3
     fast: Axis = Axis.X
     slow: Axis = Axis.Y
@@ -319,9 +323,9 @@ class SpiralMotion(CheckedFields):
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "spiral")
 
-    radius: Annotated[float, DISPLACEMENT, POSITIVE] = 5e-6
-    pitch: Annotated[float, DISPLACEMENT, POSITIVE] = 1e-6
-    speed: Annotated[float, SPEED, POSITIVE] = 0.1e-3
+    radius: Length = 5e-6
+    pitch: Length = 1e-6
+    speed: Speed = 0.1e-3
     first: Axis = Axis.X
     second: Axis = Axis.Y
 
@@ -335,8 +339,8 @@ class SineMotion(CheckedFields):
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "sine")
 
-    frequency: Annotated[float, FREQUENCY, POSITIVE] = 5.0
-    periods: Annotated[float, RATIO, POSITIVE] = 3.0
+    frequency: Frequency = 5.0
+    periods: Ratio = 3.0
     amplitude: AxisAmplitudes = field(default_factory=AxisAmplitudes)
 
 
@@ -366,10 +370,10 @@ class LoopSetup(CheckedFields):
     """
 
     model: Model = Model.LUMPED
-    rate: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    delay: Annotated[float, TIME, NOT_NEGATIVE] | None = None
+    rate: Frequency | None = None
+    delay: Time | None = None
     modes: Annotated[int, Bound(low=1.0)] | None = None
-    seconds: Annotated[float, TIME, POSITIVE] | None = None
+    seconds: Duration | None = None
     seed: Annotated[int, NOT_NEGATIVE] = 0
     compensate: tuple[Compensation, ...] = (Compensation.LOST_MOTION,)
     amplifier: Annotated[AmplifierForm, AMPLIFIERS] = field(default_factory=AmplifierSetup)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from dataclasses import field as record_field
 from functools import cached_property, partial
@@ -92,8 +92,8 @@ _NOISIER = 1.65
 _LAME = 0.7
 """Minimum rejection of quiet loops in a balance, relative to the best start. Without floor vibration the quietest loop is the slowest: such
 loops are made quiet again with nearly the same rejection."""
-_AMBITION, _BACK = 1.0, 0.8
-"""First target: 0.3 of the first mode's frequency, or this fraction of the start's rejection, with all bounds met."""
+_AMBITION, _BACK = 0.3, 0.8
+"""First target: fraction of the first mode's frequency, or of the start's rejection, with all bounds met."""
 _SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
 """Fractions of the individual loops' results that all together must reach, tried in turn."""
 _SAME = 1e-6
@@ -371,30 +371,29 @@ def search(within: Field, family: Family) -> SearchResult | None:
 
     The search for PID loops starts from the PI result. The search is deterministic, with starts on a grid.
     """
-    found = _by_blocks(within, PI_FAMILY, None)
+    found = _by_blocks(within, _shapes(within, PI_FAMILY), _best)
     if found is not None and family == PID_FAMILY:
-        found = _by_blocks(within, family, found)
-    return None if found is None else tighten(within, found)
+        found = _by_blocks(within, _shapes(within, family), partial(_on_from, found))
+    return found and tighten(within, found)
 
 
-def advance(within: Field, known: Decentralised) -> SearchResult:
+def advance(within: Field, known: Decentralised) -> SearchResult | None:
     """Improve the loops of a known controller: first each group of coupled loops, then all loops at once."""
     begun = known_loops(within, known)
-    points, reached, noises = list(begun.points), list(begun.reached), list(begun.noises)
-    for block in _blocks(within):
-        own = SearchResult(tuple(begun.shapes[loop] for loop in block), tuple(begun.points[loop] for loop in block), (0.0,) * len(block))
-        part = _part(within, block)
-        if within.spec.objective is TuningObjective.BALANCE:
-            part = replace(part, allowed=tuple(_NOISIER * each for each in _noises(part, own)))
-        starts = [own, *_calmed(part, [own], _BACK)]
-        if within.spec.objective is TuningObjective.SETTLING:  # high rejection implies fast settling
-            balanced = replace(part, spec=replace(part.spec, objective=TuningObjective.BALANCE))
-            starts.insert(0, raise_targets(balanced, starts, _frequencies_of_aim(balanced, own)))
-        found = raise_targets(part, starts, _frequencies_of_aim(part, starts[0]))
-        for place, loop in enumerate(block):
-            points[loop], reached[loop], noises[loop] = found.points[place], found.reached[place], _noises(part, found)[place]
-    points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
-    return tighten(within, SearchResult(begun.shapes, tuple(points), tuple(reached), tuple(noises)))
+    found = _by_blocks(within, begun.shapes, partial(_advanced, begun))
+    return found and tighten(within, found)
+
+
+def _advanced(begun: SearchResult, within: Field, shapes: tuple[Shape, ...], block: tuple[int, ...]) -> SearchResult:
+    """Loops of a block, improved from the known ones."""
+    own, aim = SearchResult(shapes, tuple(begun.points[loop] for loop in block), (0.0,) * len(block)), within.spec.objective
+    if aim is TuningObjective.BALANCE:
+        within = replace(within, allowed=_noise_limits(within, own))
+    starts = [own, *_calmed(within, [own], _BACK)]
+    if aim is TuningObjective.SETTLING:  # high rejection implies fast settling
+        balanced = replace(within, spec=replace(within.spec, objective=TuningObjective.BALANCE))
+        starts.insert(0, raise_targets(balanced, starts, _frequencies_of_aim(balanced, own)))
+    return raise_targets(within, starts, _frequencies_of_aim(within, starts[0]))
 
 
 def resume(within: Field, known: Decentralised) -> SearchResult:
@@ -426,37 +425,39 @@ def _known_loop(within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tup
 
 
 def tighten(within: Field, found: SearchResult) -> SearchResult:
-    """Optimise all loops at once, starting from a result in the same or a less strict field."""
-    return _together(replace(within, allowed=found.noises), found)
+    """Optimise all loops at once: the largest common share of their results, and with it the least noise.
+
+    The result `found` belongs to the same field or to a less strict one.
+    """
+    tried = found
+    for share in _SHARES:
+        looser = replace(within, allowed=tuple(one / share for one in found.noises))
+        tried, last = _fit_together(looser, tried, _all_bounds(looser, [share * one for one in found.reached]), _LAST)
+        if keeps(last):
+            break
+    return tried
 
 
-def _by_blocks(within: Field, family: Family, begun: SearchResult | None) -> SearchResult | None:
-    """Best loops by coupled blocks, the others open: from a grid of starts, or from the result of another kind."""
-    seen, shapes = within.seen, tuple(_shape(within.seen, family, loop, within.fast) for loop in range(len(within.alike)))
-    points: list[Array] = [np.zeros(0)] * len(shapes)
-    reached, noises = [0.0] * len(shapes), [np.inf] * len(shapes)
+def _by_blocks(
+    within: Field, shapes: tuple[Shape, ...], solve: Callable[[Field, tuple[Shape, ...], tuple[int, ...]], SearchResult | None]
+) -> SearchResult | None:
+    """Loops solved by coupled blocks, the others open; equal loops have equal results."""
+    solved = dict[int, tuple[Array, float, float]]()
     for block in _blocks(within):
-        part, own = _part(within, block), tuple(shapes[loop] for loop in block)
-        if begun is None:
-            grids = [list(_grid(shapes[loop], _places(seen, loop), _first_place(seen, loop))) for loop in block]
-            found = _best(part, own, beside_one_another(grids), [_AMBITION * _first_place(seen, loop) for loop in block])
-        else:
-            found = _on_from(replace(part, allowed=tuple(begun.noises[loop] for loop in block)), own, begun, block)
+        part = _part(within, block)
+        found = solve(part, tuple(shapes[loop] for loop in block), block)
         if found is None:
             return None
-        quiet = _noises(part, found)
-        for place, loop in enumerate(block):
-            first = within.alike[loop]
-            points[first], reached[first], noises[first] = found.points[place], found.reached[place], quiet[place]
-    points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
-    return SearchResult(shapes, tuple(points), tuple(reached), tuple(noises))
+        results = zip(found.points, found.reached, [each.rms for each in one_loops(part, found)], strict=True)
+        solved |= zip([within.alike[loop] for loop in block], results, strict=True)
+    return SearchResult(shapes, *zip(*(solved[first] for first in within.alike), strict=True))
 
 
-def _on_from(within: Field, shapes: tuple[Shape, ...], begun: SearchResult, block: tuple[int, ...]) -> SearchResult:
+def _on_from(begun: SearchResult, within: Field, shapes: tuple[Shape, ...], block: tuple[int, ...]) -> SearchResult:
     """Loops continued from a PI result, with a tiny derivative."""
     points = tuple(_with_derivative(shape, begun.shapes[loop], begun.points[loop]) for shape, loop in zip(shapes, block, strict=True))
-    reached = [begun.reached[loop] for loop in block]
-    return raise_targets(within, [SearchResult(shapes, _shared(within, points), tuple(reached))], reached)
+    reached, noises = (tuple(each[loop] for loop in block) for each in (begun.reached, begun.noises))
+    return raise_targets(replace(within, allowed=noises), [SearchResult(shapes, _shared(within, points), reached)], list(reached))
 
 
 def _shared(within: Field, points: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -500,20 +501,22 @@ def _part(within: Field, block: tuple[int, ...]) -> Field:
     )
 
 
-def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]], least: list[float]) -> SearchResult | None:
+def _best(within: Field, shapes: tuple[Shape, ...], block: tuple[int, ...]) -> SearchResult | None:
     """Best of a grid of starts: those of highest rejection are damped, and the first successful one is improved."""
-    starts = [
-        start for points in grid if (start := _highest_stable(within, SearchResult(shapes, points, (0.0,) * len(points)))) is not None
-    ]
-    if not starts:
+    seen, balanced = within.seen, within.spec.objective is TuningObjective.BALANCE
+    first = [_first_place(seen, loop) for loop in block]
+    grids = [list(_grid(*each)) for each in zip(shapes, [_places(seen, loop) for loop in block], first, strict=True)]
+    begun = (_highest_stable(within, SearchResult(shapes, points, (0.0,) * len(block))) for points in beside_one_another(grids))
+    far = sorted((each for each in begun if each is not None), key=lambda each: -_far(within, each))[:_STARTS]
+    if not far:
         return None
-    far = sorted(starts, key=lambda each: -_far(within, each))[:_STARTS]
     calm = _calmed(within, far, 0.0)
-    if within.spec.objective is TuningObjective.BALANCE and _far(within, calm[0]) < _LAME * _far(within, far[0]):
+    if balanced and _far(within, calm[0]) < _LAME * _far(within, far[0]):
         calm = _calmed(within, far, _BACK)
-    if within.spec.objective is TuningObjective.BALANCE and _is_calm(within, calm[0]):
-        within = replace(within, allowed=tuple(_NOISIER * each for each in _noises(within, calm[0])))
-    return raise_targets(within, [*calm, *far], _wanted(within, calm[0], least))
+    if balanced and excess(within, calm[0]) <= _NEARLY:
+        within = replace(within, allowed=_noise_limits(within, calm[0]))
+    wanted = [max(_BACK * own, _AMBITION * place) for own, place in zip(rejections(within, calm[0]), first, strict=True)]
+    return raise_targets(within, [*calm, *far], wanted)
 
 
 def _calmed(within: Field, starts: list[SearchResult], share: float) -> list[SearchResult]:
@@ -521,7 +524,7 @@ def _calmed(within: Field, starts: list[SearchResult], share: float) -> list[Sea
     calm = [
         _fit_together(within, each, _all_bounds(within, [share * far for far in rejections(within, each)]), _CALM)[0] for each in starts
     ]
-    return sorted(calm, key=lambda each: (not _is_calm(within, each), -_far(within, each)))
+    return sorted(calm, key=lambda each: (excess(within, each) > _NEARLY, -_far(within, each)))
 
 
 def rejections(within: Field, found: SearchResult) -> list[float]:
@@ -536,19 +539,9 @@ def _frequencies_of_aim(within: Field, found: SearchResult) -> list[float]:
     return soon if aim is TuningObjective.SETTLING else list(map(min, far, soon)) if aim is TuningObjective.BALANCE else far
 
 
-def _is_calm(within: Field, found: SearchResult) -> bool:
-    """Whether the bounds independent of the objective are nearly met."""
-    return excess(within, found) <= _NEARLY
-
-
-def _noises(within: Field, found: SearchResult) -> list[float]:
-    """Rms in regulation of each loop."""
-    return [each.rms for each in one_loops(within, found)]
-
-
-def _wanted(within: Field, found: SearchResult, least: list[float]) -> list[float]:
-    """Target near the present rejection, or a part of the required one at `least` [Hz]."""
-    return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(rejections(within, found), least, strict=True)]
+def _noise_limits(within: Field, found: SearchResult) -> tuple[float, ...]:
+    """Highest rms in regulation of each loop, relative to a quiet result."""
+    return tuple(_NOISIER * each.rms for each in one_loops(within, found))
 
 
 def _far(within: Field, found: SearchResult) -> float:
@@ -600,7 +593,7 @@ def loud_enough(within: Field, starts: list[SearchResult], wanted: list[float]) 
     if found is None:
         return within, None
     calm = _fit_together(free, found, _all_bounds(free, wanted), _CALM)[0]
-    louder = replace(within, allowed=tuple(_NOISIER * each for each in _noises(free, calm)))
+    louder = replace(within, allowed=_noise_limits(free, calm))
     return louder, _first_kept(louder, [calm, found], wanted)
 
 
@@ -623,17 +616,6 @@ def _around(found: SearchResult) -> Iterator[SearchResult]:
 def _all_bounds(within: Field, frequencies: Iterable[float]) -> list[Bounds]:
     allowed = within.allowed or (np.inf,) * len(within.alike)
     return [replace(_bounds(within.spec, frequency), noise=noise) for frequency, noise in zip(frequencies, allowed, strict=True)]
-
-
-def _together(within: Field, found: SearchResult) -> SearchResult:
-    """Optimise all loops at once: the largest common share of their results, and with it the least noise."""
-    tried, last = found, np.inf
-    for share in _SHARES:
-        looser = replace(within, allowed=tuple(one / share for one in within.allowed))
-        tried, last = _fit_together(within, tried, _all_bounds(looser, [share * one for one in found.reached]), _LAST)
-        if keeps(last):
-            break
-    return tried
 
 
 def _fit_together(within: Field, found: SearchResult, bounds: list[Bounds], effort: SearchSettings) -> tuple[SearchResult, float]:
@@ -784,13 +766,13 @@ def _largest_gains(given: Array) -> tuple[Array, Array]:
     return np.sqrt(value), v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
-def _shape(seen: View, family: Family, loop: int, fast: float) -> Shape:
-    corner = None
+def _shapes(within: Field, family: Family) -> tuple[Shape, ...]:
+    """Shapes of all loops with laws of a family."""
+    seen, fast, corner = within.seen, within.fast, None
     if family == PID_FAMILY:
-        corner = _CORNER * max(last_mode(seen), fast)
-        corner = corner if seen.step is None else min(corner, _OF_RATE / seen.step)
-    slowest = max(_SLOWEST * _first_place(seen, loop), _SLOWEST_OF_FAST * fast)
-    return Shape(len(_places(seen, loop)), seen.step, corner, 2.0 * np.pi * slowest)
+        corner = min(_CORNER * max(last_mode(seen), fast), np.inf if seen.step is None else _OF_RATE / seen.step)
+    slowest = (max(_SLOWEST * _first_place(seen, loop), _SLOWEST_OF_FAST * fast) for loop in range(len(within.alike)))
+    return tuple(Shape(len(_places(seen, loop)), seen.step, corner, 2.0 * np.pi * each) for loop, each in enumerate(slowest))
 
 
 def _places(seen: View, loop: int) -> list[float]:

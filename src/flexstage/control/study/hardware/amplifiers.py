@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, TypeAlias
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding
@@ -22,6 +22,7 @@ from flexstage.base.units.quantity import (
 )
 from flexstage.control.plant_models.electronics import AmplifierSettings, ChargeHold
 
+Frequency: TypeAlias = Annotated[float, FREQUENCY, POSITIVE]
 _COUPLED, _LEFT = Bound(low=0.0, high=1.0, open_high=True), Bound(low=0.0, high=1.0)
 
 
@@ -52,7 +53,7 @@ class AmplifierSetup(AmplifierForm):
     """
 
     kind: ClassVar[str] = "voltage"
-    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    bandwidth: Frequency | None = None
     resistance: Annotated[float, RESISTANCE, POSITIVE] | None = None
     current: Annotated[float, CURRENT, POSITIVE] | None = None
     slew: Annotated[float, SLEW, POSITIVE] | None = None
@@ -92,7 +93,7 @@ class ChargeSetup(AmplifierSetup):
 
     kind: ClassVar[str] = "charge"
     coupling: Annotated[float, RATIO, _COUPLED] | None = None
-    corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    corner: Frequency | None = None
     leakage: Annotated[float, RESISTANCE, POSITIVE] | None = None
     residual_hysteresis: Annotated[float, RATIO, _LEFT] = 0.2
 
