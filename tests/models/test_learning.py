@@ -75,15 +75,15 @@ def closed_of(name, **given):
 def test_a_pass_contracts_wherever_the_modes_lie():
     """On a finer grid, at offsets of its own, by loops that are closed as a whole."""
     gain, spread = 0.6, 0.02
-    _, control, closed = closed_of("parallelogram")
-    found = robust_band(closed, control.system, gain, spread)
+    _, _, closed = closed_of("parallelogram")
+    found = robust_band(closed, gain, spread)
     assert 0.0 < found.contraction < 0.8
     lines = np.linspace(5.0, found.band.end, 4001)
-    model, worst = readings(closed.plant, control.system, lines), 0.0
+    model, worst = readings(closed, lines), 0.0
     seen = select(closed.system, ["reference.x"], ["pose.x"]).transfer(lines)
     assert model == pytest.approx(seen, rel=1e-8)
     for offset in (-0.02, -0.0133, 0.0071, 0.0169, 0.02):
-        moved = readings(closed.plant, control.system, lines, offset)
+        moved = readings(closed, lines, offset)
         worst = max(worst, float(np.max(np.abs(found.band.gains(lines) * (1.0 - gain * moved / model)[:, 0, 0]))))
     assert worst < found.contraction * 1.02
 
@@ -92,7 +92,7 @@ def test_a_loop_too_slow_to_invert_is_told_as_such():
     """The errors contract, but the inverse of a loop that reaches 1.6 mHz amplifies 100 times and more at 0.9 Hz."""
     closed = integral_loop(gain=0.01)
     with pytest.raises(DesignError, match=r"by 0\.4\d* \(expected 0\.8 or less\), and the inverse .* by \d{3,} \(expected 100 or less\)"):
-        robust_band(closed, closed.controller, 0.6, 0.02)
+        robust_band(closed, 0.6, 0.02)
 
 
 def test_a_raster_is_learned_down_to_what_does_not_repeat():
@@ -112,11 +112,11 @@ def test_a_raster_is_learned_down_to_what_does_not_repeat():
 
 def test_what_does_not_repeat_is_the_noise_of_the_passes():
     """White noise of one micrometre on a pass that follows its command: unbiased by the few repeats, in the band of learning."""
-    _, control, closed = closed_of("parallelogram")
+    _, _, closed = closed_of("parallelogram")
     rng = np.random.default_rng(5)
     lesson = LearningSettings(passes=1, gain=0.6, spread=0.02, window=slice(1000, 9000))
     still = np.zeros((10_000, 1))
-    seen = [learn(lambda path, _: path + 1e-6 * rng.standard_normal(path.shape), closed, control.system, still, lesson) for _ in range(4)]
+    seen = [learn(lambda path, _: path + 1e-6 * rng.standard_normal(path.shape), closed, still, lesson) for _ in range(4)]
     gains = Band(seen[0].band).gains(np.abs(np.fft.fftfreq(len(still), closed.step)))
     expected = 1e-6 * np.sqrt(np.mean(gains**2))
     assert np.sqrt(np.mean([each.noise**2 for each in seen])) == pytest.approx(expected, rel=0.03)
@@ -187,11 +187,11 @@ def test_the_inverse_leaves_nothing_of_a_slow_path():
 def test_gauges_of_a_first_order_show_the_true_path_late():
     """Of a slow cosine step, a gauge with a corner frequency shows the response of that lag."""
     corner, count = 200.0, 2000
-    resolved, control, closed = closed_of("parallelogram", gauges=GaugeSetup(resolution=0.0, bandwidth=corner))
+    resolved, _, closed = closed_of("parallelogram", gauges=GaugeSetup(resolution=0.0, bandwidth=corner))
     time = np.arange(count) / resolved.rate
     path = 0.5 * (1.0 - np.cos(np.pi * np.clip((time - 0.05) / 0.04, 0.0, 1.0)))
     seen = scipy.signal.lsim(([1.0], [1.0 / (2.0 * np.pi * corner), 1.0]), U=path, T=time)[1]
-    found = wanted_readings(closed, control.system, 1e-6 * path[:, None], 800.0)[:, 0]
+    found = wanted_readings(closed, 1e-6 * path[:, None], 800.0)[:, 0]
     assert found == pytest.approx(1e-6 * seen, abs=2e-10)
     assert np.max(np.abs(seen - path)) > 0.03
 

@@ -52,15 +52,15 @@ def test_what_is_left_at_harmonics_and_between_them_is_the_closed_form(guide):
         poses.append(running.advance(commanded, held).pose)
         return poses[-1]
 
-    found = repeat(advance, closed, control.system, wanted, asked)
-    known = repeater(closed, control.system, asked.period, 0.6, 0.02)
-    target = wanted_readings(closed, control.system, wanted, known.band.end)
+    found = repeat(advance, closed, wanted, asked)
+    known = repeater(closed, asked.period, 0.6, 0.02)
+    target = wanted_readings(closed, wanted, known.band.end)
     last = slice(count - 2 * samples, count - samples)
     errors = [np.fft.rfft((target - each)[last, 0])[lines] for each in (bare, np.concatenate(poses))]
     frequencies = lines / (samples * step)
     keep, teach = known.at(frequencies, step)
     z = np.where(lines % 2 == 0, 1.0, -1.0)
-    right = readings(closed.plant, control.system, frequencies)[:, 0, 0] * teach[:, 0, 0]
+    right = readings(closed, frequencies)[:, 0, 0] * teach[:, 0, 0]
     share = (1.0 - keep * z) / (1.0 - (keep - right) * z)
     assert frequencies[-1] > 0.9 * known.band.end
     np.testing.assert_allclose(errors[1] / errors[0], share, rtol=0.0, atol=1e-6)
@@ -71,13 +71,13 @@ def test_what_is_left_at_harmonics_and_between_them_is_the_closed_form(guide):
 
 def test_it_contracts_wherever_the_modes_lie(guide):
     """On a finer grid, at offsets of its own, by the filters themselves."""
-    given, control, closed = guide
-    found = repeater(closed, control.system, 0.02, 0.6, 0.02)
+    given, _, closed = guide
+    found = repeater(closed, 0.02, 0.6, 0.02)
     lines = np.linspace(2.0, 0.5 / given.step, 4001)
     keep, teach = found.at(lines, given.step)
     assert found.contraction < 0.9
     for offset in (-0.02, -0.0133, 0.0071, 0.02):
-        left = keep - readings(closed.plant, control.system, lines, offset)[:, 0, 0] * teach[:, 0, 0]
+        left = keep - readings(closed, lines, offset)[:, 0, 0] * teach[:, 0, 0]
         assert np.max(np.abs(left)) < found.contraction * 1.02
 
 
@@ -94,11 +94,11 @@ def test_a_raster_is_repeated_better_and_better():
 
 
 def test_what_cannot_be_is_said(guide):
-    _, control, closed = guide
+    _, _, closed = guide
     told = [str(each) for each in setup_findings(LoopSetup(trajectory=StepMotion(), follow=FOLLOW))]
     assert ["needs a periodic trajectory (got step" in each for each in told] == [True]
     with pytest.raises(DesignError, match="first harmonic"):
-        repeater(closed, control.system, 6e-4, 0.6, 0.02)
+        repeater(closed, 6e-4, 0.6, 0.02)
     few = RasterMotion(length=5e-6, pitch=0.5e-6, lines=2, speed=1e-3, acceleration=0.5)
     with pytest.raises(DesignError, match="repetitive control needs at least 2"):
         runs(*closed_of("xy-stage", trajectory=few, follow=FOLLOW))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, TypeAlias
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from flexstage.base.record import INNER, VIEW, Along, Axes, Heading, Layout, Uni
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.learning.responses import Band, frequencies_of, motions, readings, scaled_norms, through
 from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.system import System
 
 _CONTRACTS = 0.8
 """Largest contraction factor of the error per pass, for all mode shifts."""
@@ -26,6 +25,7 @@ _REPEATS = 4
 
 
 IN_BAND = "All errors are rms values, measured by the gauges. The last column is the error above the band, where nothing is learned."
+ByCoordinate: TypeAlias = Annotated[Array, Along("coordinates"), UnitIn("units")]
 BEYOND = Heading("beyond the band", digits=3)
 
 
@@ -67,17 +67,17 @@ class LearningResult:
     gain: float
     spread: float
     rms: Annotated[Array, Axes("passes", "coordinates")]
-    noise: Annotated[Array, Along("coordinates"), UnitIn("units"), Heading("non-repeating", digits=3)]
-    beyond: Annotated[Array, Along("coordinates"), UnitIn("units"), BEYOND]
+    noise: Annotated[ByCoordinate, Heading("non-repeating", digits=3)]
+    beyond: Annotated[ByCoordinate, BEYOND]
     commanded: Annotated[Array, INNER]
 
     @property
-    def before(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("without learning", digits=3)]:
+    def before(self) -> Annotated[ByCoordinate, INNER, Heading("without learning", digits=3)]:
         """Error in the band (f,) without learning."""
         return self.rms[0]
 
     @property
-    def learned(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last pass", digits=3)]:
+    def learned(self) -> Annotated[ByCoordinate, INNER, Heading("last pass", digits=3)]:
         """Error in the band (f,) after the last pass."""
         return self.rms[-1]
 
@@ -87,7 +87,7 @@ class LearningResult:
         return self.rms[-1] / self.noise
 
 
-def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
+def robust_band(closed: Loop, gain: float, spread: float) -> RobustBand:
     """Find the frequency band in which ||I - gain P P_m^-1|| is at most 0.8, for relative mode shifts up to `spread`.
 
     P are the loop's responses with shifted modes, and P_m are its responses without shift. The norm is the largest singular value, with
@@ -95,13 +95,12 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
     International Journal of Control 75 (2002) 1114). The band also ends where ||P_m^-1|| first exceeds 100. Raises `DesignError` if these
     limits leave no band.
     """
-    plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)
-    back = np.linalg.inv(readings(plant, control, lines))
-    scale = plant.coordinates.scale
+    back = np.linalg.inv(readings(closed, lines))
+    scale = closed.plant.coordinates.scale
     worst = np.zeros(len(lines))
     for offset in np.linspace(-spread, spread, _OFFSETS):
-        left = np.eye(len(scale)) - gain * readings(plant, control, lines, float(offset)) @ back
+        left = np.eye(len(scale)) - gain * readings(closed, lines, float(offset)) @ back
         worst = np.maximum(worst, scaled_norms(left, scale))
     asked = scaled_norms(back, scale)
     beyond = np.flatnonzero((worst > _CONTRACTS) | (asked > _MOST_INVERTED))
@@ -109,7 +108,7 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
         what = f"for mode shifts up to {100.0 * spread:g} %, one pass may multiply the error at {lines[0]:.3g} Hz by {worst[0]:.3g}"
         inverse = f"and the inverse of the loop amplifies by {asked[0]:.3g} (expected {_MOST_INVERTED:g} or less)"
         raise refuse("follow", f"{what} (expected {_CONTRACTS:g} or less), {inverse}", "Use a smaller gain or spread, or a faster loop")
-    end = float(lines[beyond[0] - 1]) if len(beyond) else 0.45 / step
+    end = float(lines[beyond[0] - 1]) if len(beyond) else 0.45 / (closed.step or 1.0)
     band = Band(end)
     return RobustBand(band, float(np.max(worst[lines <= end] * band.gains(lines[lines <= end]))))
 
@@ -126,12 +125,12 @@ def line_grid(closed: Loop, spread: float) -> Array:
     return every[(every >= 1e-3 * modes[0]) & (every <= highest)]
 
 
-def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) -> Array:
+def wanted_readings(closed: Loop, wanted: Array, end: float) -> Array:
     """Compute the poses (n, k) that gauges measure on a true path (n, k). Lags are modelled at frequencies up to four times `end` [Hz]."""
     step = closed.step or 1.0
     frequencies = frequencies_of(wanted, step)
     band = Band(min(4.0 * end, 0.45 / step))
-    seen = band.blend(frequencies, lambda lines: readings(closed.plant, control, lines) @ np.linalg.inv(motions(closed, lines)))
+    seen = band.blend(frequencies, lambda lines: readings(closed, lines) @ np.linalg.inv(motions(closed, lines)))
     return through(seen, wanted)
 
 
@@ -145,29 +144,34 @@ class LearningSettings:
     window: slice
 
 
-def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
+def learn(run: Callable[[Array, int], Array], closed: Loop, wanted: Array, lesson: LearningSettings) -> LearningResult:
     """Learn the command for a true path (n, f) that is at rest at both ends: the path plus a correction d.
 
     After a pass with the error e, the new correction is Q (d + gain P_m^-1 e). P_m is the model's response from reference to measured pose,
     and Q the low-pass filter of the robust band. `run(path, number)` simulates pass `number` along a commanded path, and returns the
     measured poses (n, f). Raises `DesignError` like `robust_band`.
     """
-    robust = robust_band(closed, control, lesson.gain, lesson.spread)
+    robust = robust_band(closed, lesson.gain, lesson.spread)
     frequencies = frequencies_of(wanted, closed.step or 1.0)
     filtered = robust.band.gains(frequencies)
     whole = Band(0.75 * robust.band.end).gains(frequencies)
-    back = lesson.gain * robust.band.blend(frequencies, lambda lines: np.linalg.inv(readings(closed.plant, control, lines)), 0.0)
-    target, added, rms = wanted_readings(closed, control, wanted, robust.band.end), np.zeros_like(wanted), []
-    error, fades = target, fade_ends(len(wanted), lesson.window)[:, None]
-    for number in range(lesson.passes + 1):
-        error = (target - run(wanted + added, number)) * fades
-        rms.append(_rms(filter_path(whole, error)[lesson.window]))
-        if number < lesson.passes:
-            added = filter_path(filtered, added) + through(back, error)
-    final = [run(wanted + added, lesson.passes + each) for each in range(1, _REPEATS)]
-    again = np.array([filter_path(whole, (target - each) * fades)[lesson.window] for each in final])
-    every = np.concatenate([filter_path(whole, error)[None, lesson.window], again])
-    rms[-1] = np.sqrt(np.mean(every**2, axis=(0, 1)))
+    back = lesson.gain * robust.band.blend(frequencies, lambda lines: np.linalg.inv(readings(closed, lines)), 0.0)
+    target, added, rms = wanted_readings(closed, wanted, robust.band.end), np.zeros_like(wanted), []
+    fades = fade_ends(len(wanted), lesson.window)[:, None]
+
+    def errors(number: int) -> Array:
+        return (target - run(wanted + added, number)) * fades
+
+    def inside(error: Array) -> Array:
+        return filter_path(whole, error)[lesson.window]
+
+    error = errors(0)
+    for number in range(1, lesson.passes + 1):
+        rms.append(_rms(inside(error)))
+        added = filter_path(filtered, added) + through(back, error)
+        error = errors(number)
+    every = np.array([inside(each) for each in (error, *map(errors, range(lesson.passes + 1, lesson.passes + _REPEATS)))])
+    rms.append(np.sqrt(np.mean(every**2, axis=(0, 1))))
     return LearningResult(
         coordinates=closed.plant.coordinates.names,
         units=closed.plant.coordinates.units,
@@ -202,8 +206,8 @@ def _rms(values: Array) -> Array:
     return np.sqrt(np.mean(values**2, axis=0))
 
 
-def inverse_path(closed: Loop, control: System, wanted: Array, spread: float) -> Array:
+def inverse_path(closed: Loop, wanted: Array, spread: float) -> Array:
     """Compute the command for a true path (n, f) that is at rest at both ends, with the inverse of the model in the robust band."""
-    band = robust_band(closed, control, 1.0, spread).band
+    band = robust_band(closed, 1.0, spread).band
     frequencies = frequencies_of(wanted, closed.step or 1.0)
     return through(band.blend(frequencies, lambda lines: np.linalg.inv(motions(closed, lines))), wanted)

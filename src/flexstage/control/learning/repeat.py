@@ -11,12 +11,11 @@ import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, Along, Axes, Heading, Layout, UnitIn
+from flexstage.base.record import INNER, Axes, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY, TIME
-from flexstage.control.learning.learn import BEYOND, IN_BAND, fade_ends, filter_path, line_grid, robust_band, wanted_readings
+from flexstage.control.learning.learn import BEYOND, IN_BAND, ByCoordinate, fade_ends, filter_path, line_grid, robust_band, wanted_readings
 from flexstage.control.learning.responses import Band, frequencies_of, readings, scaled_norms
 from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.system import System
 
 _MEMORY = 6.0
 """Length of the filters on each side, in periods of the band's end frequency."""
@@ -57,17 +56,17 @@ class Repeater:
         return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
 
 
-def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
+def repeater(closed: Loop, period: float, gain: float, spread: float) -> Repeater:
     """Design the filters for a `period` [s] in the widest band in which errors decrease, for relative mode shifts up to `spread`.
 
     `gain` multiplies the inverse model of the loop. Finite filters also act outside their band; therefore the band is narrower than for
     iterative learning. Raises `DesignError` like `robust_band`, and for a period so short that no usable band contains the first harmonic.
     """
-    step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
+    step, end = closed.step or 1.0, robust_band(closed, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
-    moved = [readings(closed.plant, control, lines, float(offset)) for offset in np.linspace(-spread, spread, _OFFSETS)]
+    moved = [readings(closed, lines, float(offset)) for offset in np.linspace(-spread, spread, _OFFSETS)]
     while _WHOLE * end > 1.0 / period:
-        found = _repeater(closed, control, period, Band(end), gain)
+        found = _repeater(closed, period, Band(end), gain)
         kept, taught = found.at(lines, step)
         own = kept[:, None, None] * np.eye(taught.shape[-1])
         contraction = max(float(np.max(scaled_norms(own - each @ taught, closed.plant.coordinates.scale))) for each in moved)
@@ -83,37 +82,26 @@ def repeater(closed: Loop, control: System, period: float, gain: float, spread: 
     )
 
 
-def _repeater(closed: Loop, control: System, period: float, band: Band, gain: float) -> Repeater:
-    """Filters of a band, before verification."""
+def _repeater(closed: Loop, period: float, band: Band, gain: float) -> Repeater:
+    """Filters of a band, before verification: advanced by a fraction of a sample, with windowed ends."""
     step = closed.step or 1.0
     samples = period / step
     reach = int(min(np.ceil(_MEMORY / (band.end * step)), _MOST_OF_PERIOD * samples))
-    keep, teach = _filters(closed, control, band, gain, reach=reach, early=float(np.floor(samples + 0.5) - samples))
-    return Repeater(samples, keep, teach, band, np.nan, np.nan)
+    count = 2 ** int(np.ceil(np.log2(_FINEST * (2 * reach + 1))))
+    lines = np.fft.rfftfreq(count, step)
+    lines[0] = 1e-3 * lines[1]
+    phase = np.exp(2j * np.pi * lines * step * (np.floor(samples + 0.5) - samples))
+    back = gain * phase[:, None, None] * band.blend(lines, lambda inside: np.linalg.inv(readings(closed, inside)), 0.0)
+    places = np.arange(-reach, reach + 1)
+    window = 0.5 * (1.0 + np.cos(np.pi * places / (reach + 1.0)))
+    keep, teach = (np.fft.irfft(each, n=count, axis=0)[places] for each in (band.gains(lines) * phase, back))
+    return Repeater(samples, keep * window, teach * window[:, None, None], band, np.nan, np.nan)
 
 
 def _amplification(kept: Array, left: Array, scale: Array) -> float:
     """Largest ||(I - q W) (I - q (W - P L))^-1|| over |q| = 1, for W (n, f, f) and W - P L."""
     own, turns = np.eye(left.shape[-1]), np.exp(2j * np.pi * np.arange(_PHASES) / _PHASES)
     return max(float(np.max(scaled_norms((own - z * kept) @ np.linalg.inv(own - z * left), scale))) for z in turns)
-
-
-def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: int, early: float) -> tuple[Array, Array]:
-    """Taps of Q and of Q gain P_m^-1 from -`reach` to `reach` samples, advanced by a fraction of a sample, with windowed ends."""
-    step = closed.step or 1.0
-    count = 2 ** int(np.ceil(np.log2(_FINEST * (2 * reach + 1))))
-    lines = np.fft.rfftfreq(count, step)
-    lines[0] = 1e-3 * lines[1]
-    phase = np.exp(2j * np.pi * lines * step * early)
-    gains, inverse = (
-        band.gains(lines) * phase,
-        band.blend(lines, lambda inside: np.linalg.inv(readings(closed.plant, control, inside)), 0.0),
-    )
-    back = gain * phase[:, None, None] * inverse
-    places = np.arange(-reach, reach + 1)
-    window = 0.5 * (1.0 + np.cos(np.pi * places / (reach + 1.0)))
-    keep, teach = (np.fft.irfft(each, n=count, axis=0)[places] for each in (gains, back))
-    return keep * window, teach * window[:, None, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,50 +137,46 @@ class RepetitiveResult:
     gain: float
     spread: float
     rms: Annotated[Array, Axes("periods", "coordinates")]
-    beyond: Annotated[Array, Along("coordinates"), UnitIn("units"), BEYOND]
+    beyond: Annotated[ByCoordinate, BEYOND]
     commanded: Annotated[Array, INNER]
 
     @property
-    def first(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("first period", digits=3)]:
+    def first(self) -> Annotated[ByCoordinate, INNER, Heading("first period", digits=3)]:
         """Rms error (f,) of the first period."""
         return self.rms[0]
 
     @property
-    def halfway(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("middle period", digits=3)]:
+    def halfway(self) -> Annotated[ByCoordinate, INNER, Heading("middle period", digits=3)]:
         """Rms error (f,) of the middle period."""
         return self.rms[len(self.rms) // 2]
 
     @property
-    def last(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last period", digits=3)]:
+    def last(self) -> Annotated[ByCoordinate, INNER, Heading("last period", digits=3)]:
         """Rms error (f,) of the last period."""
         return self.rms[-1]
 
 
 @dataclass(frozen=True, eq=False)
 class Repetition:
-    """Repetition of a path: its `period` [s], and the `window` of samples in which the path is periodic."""
+    """Repetition of a path: its `period` [s], and the `window` of samples in which the path is periodic.
+
+    `gain` is the learning gain, `spread` the largest relative mode shift.
+    """
 
     period: float
     window: slice
+    gain: float = 0.6
+    spread: float = 0.02
 
 
-def repeat(
-    advance: Callable[[Array], Array],
-    closed: Loop,
-    control: System,
-    wanted: Array,
-    asked: Repetition,
-    *,
-    gain: float = 0.6,
-    spread: float = 0.02,
-) -> RepetitiveResult:
+def repeat(advance: Callable[[Array], Array], closed: Loop, wanted: Array, asked: Repetition) -> RepetitiveResult:
     """Simulate a run along a true path (n, f), with corrections from the errors of previous periods.
 
     `advance` continues the run with further commanded poses, and returns the measured poses. Only errors within `asked.window` are used;
     after this window the correction fades out. Raises `DesignError` like `repeater`.
     """
-    found = repeater(closed, control, asked.period, gain, spread)
-    target = wanted_readings(closed, control, wanted, found.band.end)
+    found = repeater(closed, asked.period, asked.gain, asked.spread)
+    target = wanted_readings(closed, wanted, found.band.end)
     added, error = np.zeros_like(wanted), np.zeros_like(wanted)
     learns, fades = _windows(len(wanted), asked.window, found.reach)
     block = max(int(found.period + 0.5) - found.reach, 1)
@@ -200,7 +184,7 @@ def repeat(
         stop = min(start + block, len(wanted))
         added[start:stop] = _next(found, added, error * learns[:, None], start, stop) * fades[start:stop, None]
         error[start:stop] = target[start:stop] - advance(wanted[start:stop] + added[start:stop])
-    return _repeated(found, closed, error, asked, gain=gain, spread=spread, commanded=wanted + added)
+    return _repeated(found, closed, error, asked, wanted + added)
 
 
 def _windows(count: int, window: slice, fade: int) -> tuple[Array, Array]:
@@ -226,9 +210,7 @@ def _next(found: Repeater, added: Array, error: Array, start: int, stop: int) ->
     return kept + np.stack(taught, axis=-1)
 
 
-def _repeated(
-    found: Repeater, closed: Loop, error: Array, asked: Repetition, *, gain: float, spread: float, commanded: Array
-) -> RepetitiveResult:
+def _repeated(found: Repeater, closed: Loop, error: Array, asked: Repetition, commanded: Array) -> RepetitiveResult:
     whole = Band(_WHOLE * found.band.end)
     error = error * fade_ends(len(error), asked.window)[:, None]
     inside = filter_path(whole.gains(frequencies_of(error, closed.step or 1.0)), error)
@@ -243,8 +225,8 @@ def _repeated(
         band=whole.end,
         contraction=found.contraction,
         amplifies=found.amplifies,
-        gain=gain,
-        spread=spread,
+        gain=asked.gain,
+        spread=asked.spread,
         rms=np.sqrt(np.array(squares)),
         beyond=np.sqrt(np.mean(last**2, axis=0)),
         commanded=commanded,

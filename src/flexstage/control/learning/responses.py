@@ -9,24 +9,23 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.pose_plant import pose_plant
-from flexstage.control.plant_models.plants import Plant
 from flexstage.control.systems.closed import Loop, pose_controller
-from flexstage.control.systems.system import System, select
+from flexstage.control.systems.system import select
 
 _AT_REST = 1e-4
 _TAPER = 0.75
 """Start of the fade-out, relative to the band's end."""
 
 
-def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
+def readings(closed: Loop, frequencies: Array, offset: float = 0.0) -> Array:
     """Compute responses (f, k, k) from the reference to the measured pose, with all mode frequencies raised by a relative `offset`.
 
     For the reference r, the measured pose is y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r. P is the response of the sampled plant; K_e, K_y
     and K_r are the controller's responses to error, pose and reference. The mode frequencies are raised by scaling the time of the plant;
     the plant's lags therefore become shorter. Hold and delay of a sampled plant are unchanged.
     """
-    P = pose_plant(plant, offset).sweep(frequencies)
-    back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
+    P = pose_plant(closed.plant, offset).sweep(frequencies)
+    back, forward = np.split(pose_controller(closed.controller, closed.plant.coordinates).sweep(frequencies), 2, axis=2)
     return np.linalg.solve(np.eye(P.shape[1]) + P @ back, P @ forward)
 
 

@@ -233,7 +233,7 @@ def runs(given: ResolvedSetup, control: Control, closed: Loop, stacks: Stacks | 
         warnings = tuple(course_warnings(course, poses, times, gains, slew, units=units))
         taught = {}
         if given.setup.follow is not None:
-            simulated, taught = follow(given.setup.follow, closed, control.system, poses, course, noisy=noisy)
+            simulated, taught = follow(given.setup.follow, closed, poses, course, noisy=noisy)
         else:
             simulated = simulate(computed, poses) if course.is_step else noisy.simulate(poses)
         figures = step_figures(simulated, _BAND) if course.is_step else None
