@@ -16,7 +16,7 @@ from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.outputs.unrecorded import identify_decay, identify_floor
-from flexstage.experiment.progress import part
+from flexstage.experiment.progress import each_part, part
 from flexstage.experiment.records.health import RecordRequirements, responses_findings, usable_record
 from flexstage.experiment.records.options import FaultTolerance
 from flexstage.experiment.records.record import Record, Responses, names_of
@@ -107,15 +107,12 @@ def identification(test: Measurement, search: Search = _DEFAULT) -> Identificati
                 test, identify(test, search) if search.excitation is Excitation.RECORDED else _without_inputs(test, search)
             )
     segments = search.segments if search.segments is not None else choose_segments(test)
-    share = (_SPECTRA - _LOOKED) / len(test)
-    parts: list[Spectra] = []
-    for index, record in enumerate(test):
-        with part(_LOOKED + index * share, _LOOKED + (index + 1) * share, "spectra"):
-            parts.append(spectra(record, segments))
+    with part(_LOOKED, _SPECTRA, "spectra"):
+        parts = each_part(lambda record: spectra(record, segments), test)
     with part(_SPECTRA, 1.0, "finding modes"):
         found = identify(list(test), search, parts)
     names = names_of(found.inputs)
-    known = pool([part.driven(names) for part in parts])
+    known = pool([each.driven(names) for each in parts])
     second = h2(known) if len(known.outputs) >= len(known.inputs) else None
     return Identification(test, found, known, multiple_coherence(known), second, spectral_ratio(known))
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
 ProgressCallback: TypeAlias = Callable[[str, float], None]
 """Callback with two arguments: a description of the current step, and the completed fraction, 0 to 1."""
 
@@ -39,6 +41,22 @@ def part(start: float, stop: float, text: str = "") -> Generator[None]:
     outer = _FOLLOWER.get()
     with followed(lambda own, share: outer(text or own, start + share * (stop - start))):
         yield
+
+
+def each_part(compute: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
+    """Return the results of a computation for all items; each item is an equal part of the progress.
+
+    >>> with followed(print):
+    ...     each_part(lambda item: report(item), [0.5, 1.0])
+     0.25
+     1.0
+    [None, None]
+    """
+    found: list[_Result] = []
+    for index, item in enumerate(items):
+        with part(index / len(items), (index + 1) / len(items)):
+            found.append(compute(item))
+    return found
 
 
 def report(share: float, text: str = "") -> None:

@@ -56,38 +56,22 @@ def extents(poles: Array, low: float, high: float, *, resolution: Array | float 
     >>> [(round(band.low), round(band.high), band.members) for band in found]
     [(76, 125, (0, 1)), (176, 224, (2,))]
     """
-    poles = np.minimum(np.real(poles), -resolution) + 1j * np.imag(poles)
-    frequencies, widths = np.imag(poles), -np.real(poles)
-    groups: list[list[int]] = []
-    for index in range(len(poles)):
-        if groups and frequencies[index] - frequencies[index - 1] < together * (widths[index] + widths[index - 1]):
-            groups[-1].append(index)
-        else:
-            groups.append([index])
-    groups = [part for group in groups for part in _divide(group, frequencies)]
-    return [_extent(poles, group, low, high) for group in groups]
+    frequencies, widths = np.imag(poles), np.maximum(-np.real(poles), resolution)
+    gaps, both = np.diff(frequencies), widths[1:] + widths[:-1]
+    limits = np.array([low, *(frequencies[:-1] + gaps * widths[:-1] / both), high])
+    bottom, top = frequencies - _REACH * widths, frequencies + _REACH * widths
+    return [
+        Extent(
+            max(low, limits[group[0]], np.min(bottom[group])), min(high, limits[group[-1] + 1], np.max(top[group])), tuple(group.tolist())
+        )
+        for whole in np.split(np.arange(len(poles)), 1 + np.flatnonzero(gaps >= together * both))
+        for group in _divide(whole, frequencies)
+    ]
 
 
-def _divide(group: list[int], frequencies: Array) -> list[list[int]]:
+def _divide(group: Array, frequencies: Array) -> list[Array]:
     """Split a group of too many modes for one fit at its widest gaps."""
     if len(group) <= _MOST:
         return [group]
     cut = 1 + int(np.argmax(np.diff(frequencies[group])))
     return _divide(group[:cut], frequencies) + _divide(group[cut:], frequencies)
-
-
-def _extent(poles: Array, group: list[int], low: float, high: float) -> Extent:
-    frequencies, widths = np.imag(poles), -np.real(poles)
-    bottom = min(frequencies[index] - _REACH * widths[index] for index in group)
-    top = max(frequencies[index] + _REACH * widths[index] for index in group)
-    first, last = group[0], group[-1]
-    if first > 0:
-        bottom = max(bottom, _divide_gap(frequencies, widths, first - 1))
-    if last + 1 < len(poles):
-        top = min(top, _divide_gap(frequencies, widths, last))
-    return Extent(max(low, bottom), min(high, top), tuple(group))
-
-
-def _divide_gap(frequencies: Array, widths: Array, index: int) -> float:
-    gap = frequencies[index + 1] - frequencies[index]
-    return float(frequencies[index] + gap * widths[index] / (widths[index] + widths[index + 1]))

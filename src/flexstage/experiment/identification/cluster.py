@@ -122,14 +122,11 @@ def _continue_tracks(tracks: list[_Track], values: Array, participations: Array,
             coincident = abs(value - track.poles[-1]) < -_COINCIDENT * value.real
             if away < _NEAR and (similar > _ALIKE or coincident):
                 pairs.append((away / _NEAR + 1.0 - similar, number, index))
-    taken: set[int] = set()
-    grown: set[int] = set()
+    taken: dict[int, int] = {}
     for _, number, index in sorted(pairs):
-        if index in taken or number in grown:
-            continue
-        _grow(tracks[number], values[index], participations[index], order)
-        taken.add(index)
-        grown.add(number)
+        if index not in taken and number not in taken.values():
+            _grow(tracks[number], values[index], participations[index], order)
+            taken[index] = number
     tracks += [_Track([value], [participations[index]], [order], [0]) for index, value in enumerate(values) if index not in taken]
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import numpy as np
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.experiment.identification.outputs.tones import Tone, remove_tones
-from flexstage.experiment.progress import part, report
+from flexstage.experiment.progress import each_part, part, report
 from flexstage.experiment.records.record import Channel, Record, Responses, names_of, rising_problem
 from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Window, pool, spectra
 from flexstage.experiment.spectral.growth import noise_growth
@@ -20,7 +19,6 @@ from flexstage.experiment.spectral.lines import Cells, Lines, block_count, in_ba
 from flexstage.experiment.spectral.smear import SMEARING, WindowLeakage
 from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise_density
 
-_Result = TypeVar("_Result")
 _SEGMENTS = 24.0
 _PER_INPUT = 3.0
 _LONGEST, _WHOLE = 32_768, 1 << 20
@@ -99,22 +97,13 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
     made = (what,) if isinstance(what, Record) else tuple(what)
     require(_findings(made))
     with part(0.0, 1.0 / _PASSES):
-        records, tones = zip(*_each_part(remove_tones, made), strict=True)
+        records, tones = zip(*each_part(remove_tones, made), strict=True)
     chosen = segments if segments is not None else choose_segments(records)
     usable = {id(record): each for record, each in zip(made, known, strict=False) if each.segments == chosen}
     with part(1.0 / _PASSES, 2.0 / _PASSES):
-        parts = _each_part(lambda record: usable.get(id(record)) or spectra(record, chosen), records)
+        parts = each_part(lambda record: usable.get(id(record)) or spectra(record, chosen), records)
     together = pool([each.driven(names_of(each.inputs)) for each in parts])
     return replace(_of_records(records, together), tones=tuple(itertools.chain(*tones)))
-
-
-def _each_part(compute: Callable[[Record], _Result], records: Sequence[Record]) -> list[_Result]:
-    """Apply a computation to every record, each an equal part of the progress."""
-    found: list[_Result] = []
-    for index, record in enumerate(records):
-        with part(index / len(records), (index + 1) / len(records)):
-            found.append(compute(record))
-    return found
 
 
 def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
@@ -240,7 +229,7 @@ def whole_segment(records: Sequence[Record]) -> Segments:
 
 def _of_responses(known: Responses) -> Evidence:
     steps = np.diff(known.frequencies)
-    require(_response_findings(known, steps))
+    _refuse_responses(known)
     size = np.sqrt(np.mean(np.abs(known.values) ** 2, axis=(0, 2)))
     output_scale = _divisor(size)
     count = known.values.shape[2]
@@ -304,15 +293,14 @@ _INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.82, Windo
 """Sum over lines of the squared correlation of a window's lines: 1 + 2 (4/9 + 1/36) = 1.94 for Hann's."""
 
 
-def _response_findings(known: Responses, steps: Array) -> list[Finding]:
-    where = known.where
-    if len(steps) < 15:
-        return [Finding(where, f"too few frequencies (got {len(steps) + 1})", "Use responses at 16 frequencies or more")]
-    if not np.all(np.isfinite(known.values)):
-        return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Omit these channels or frequencies")]
+def _refuse_responses(known: Responses) -> None:
+    """Raise `DesignError` for too few frequencies, frequencies that decrease, and values that are not numbers."""
+    if len(known.frequencies) < 16:
+        raise refuse(known.where, f"too few frequencies (got {len(known.frequencies)})", "Use responses at 16 frequencies or more")
+    if broken := int(np.sum(~np.isfinite(known.values))):
+        raise refuse(known.where, f"{broken} values are not numbers", "Omit these channels or frequencies")
     if (falling := rising_problem(known.frequencies)) is not None:
-        return [Finding(where, falling, "Export each frequency once, from the lowest to the highest")]
-    return []
+        raise refuse(known.where, falling, "Export each frequency once, from the lowest to the highest")
 
 
 def is_even(frequencies: Array) -> bool:

@@ -159,19 +159,14 @@ def _limit(modal: Modal) -> float:
     return float(scipy.special.chdtri(freedoms(modal), ONCE_IN))
 
 
-def _chance(modal: Modal, strength: float) -> float:
-    return float(scipy.special.chdtrc(freedoms(modal), strength))
-
-
 def _prune(band: Band, found: Fit, hunt: ModeSearch) -> tuple[Fit, Array]:
     """Remove insignificant modes one at a time, least significant first; returns the significance of the others."""
     while len(found.modal.poles):
         worst, strength = _least_significant(band, found, hunt)
         if worst is None:
             return found, strength
-        hunt.lost.append(
-            RejectedResonance(complex(found.modal.poles[worst]), found.modal.shapes[:, worst], _chance(found.modal, strength[worst]))
-        )
+        chance = float(scipy.special.chdtrc(freedoms(found.modal), strength[worst]))
+        hunt.lost.append(RejectedResonance(complex(found.modal.poles[worst]), found.modal.shapes[:, worst], chance))
         found = fit(band, found.modal.without(worst))
     return found, np.zeros(0)
 

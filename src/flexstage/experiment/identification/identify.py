@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields, check_arguments
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import refuse, require
 from flexstage.base.number import Array
 from flexstage.experiment.identification.bands import TOGETHER, extents, sweeps
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
@@ -134,8 +134,7 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
         require(few_lines(known, chosen, int(np.sum(in_band(known.responses.frequencies, chosen)))))
         return chosen
     what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are requested; the data reach from {low:.4g} to {high:.4g} Hz"
-    require([Finding(known.where, what, "Request a band within this range, or record faster or longer")])
-    return low, high
+    raise refuse(known.where, what, "Request a band within this range, or record faster or longer")
 
 
 def _candidates(
@@ -284,11 +283,5 @@ def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> 
 
 def close_groups(poles: Array) -> tuple[tuple[int, ...], ...]:
     """Group successive modes (`poles` (k,)) that are closer than the mean of their half-widths, and return the indices of each group."""
-    groups: list[list[int]] = []
-    for index in range(len(poles)):
-        before = groups[-1][-1] if groups else None
-        if before is not None and abs(poles[index].imag - poles[before].imag) < -0.5 * (poles[index] + poles[before]).real:
-            groups[-1].append(index)
-        else:
-            groups.append([index])
-    return tuple(tuple(group) for group in groups if len(group) > 1)
+    apart = np.abs(np.diff(np.imag(poles))) >= -0.5 * np.real(poles[1:] + poles[:-1])
+    return tuple(tuple(group.tolist()) for group in np.split(np.arange(len(poles)), 1 + np.flatnonzero(apart)) if len(group) > 1)

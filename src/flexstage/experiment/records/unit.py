@@ -63,6 +63,17 @@ def same_dimension(unit: str, other: str) -> bool:
     return dimension_of(unit).powers == dimension_of(other).powers
 
 
+def derivative_order(unit: str) -> int:
+    """Return the order of the derivative of a motion with this unit: 1 for velocities, 2 for accelerations, 0 for other or unknown units.
+
+    >>> derivative_order("mm/s"), derivative_order("deg/s^2"), derivative_order("N")
+    (1, 2, 0)
+    """
+    if unit_problem(unit) is not None:
+        return 0
+    return next((order for order in (1, 2) for motion in ("m", "rad") if same_dimension(unit, f"{motion}/s^{order}")), 0)
+
+
 def in_si(record: Record) -> Record:
     """Convert a record to SI; samples are scaled when they are read. Channels with a missing or unknown unit are unchanged.
 

@@ -199,10 +199,10 @@ def pool(parts: Sequence[Spectra]) -> Spectra:
     inputs = tuple({channel.name: channel for part in parts for channel in part.inputs}.values())
     names = names_of(inputs)
     first = parts[0]
-    count, outputs = len(inputs), len(first.outputs)
+    count = len(inputs)
     xx = np.zeros((len(first.frequencies), count, count), dtype=complex)
-    yx = np.zeros((len(first.frequencies), outputs, count), dtype=complex)
-    yy = np.zeros((len(first.frequencies), outputs, outputs), dtype=complex)
+    yx = np.zeros((len(xx), len(first.outputs), count), dtype=complex)
+    yy = np.zeros_like(first.yy)
     averages = sum(part.averages for part in parts)
     for part in parts:
         places = [names.index(channel.name) for channel in part.inputs]

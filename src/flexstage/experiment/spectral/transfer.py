@@ -84,8 +84,7 @@ def multiple_coherence(spectra: Spectra) -> Array:
     >>> multiple_coherence(example_spectra())[3].round(9).tolist()
     [1.0]
     """
-    explained = np.real(np.sum(h1(spectra).values * np.conj(spectra.yx), axis=-1))
-    return _share(explained, np.real(_diagonal(spectra.yy)))
+    return _share(_explained(spectra), np.real(_diagonal(spectra.yy)))
 
 
 def noise_density(spectra: Spectra) -> Array:
@@ -95,8 +94,7 @@ def noise_density(spectra: Spectra) -> Array:
     >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)
     True
     """
-    explained = np.real(np.sum(h1(spectra).values * np.conj(spectra.yx), axis=-1))
-    left = np.maximum(np.real(_diagonal(spectra.yy)) - explained, 0.0)
+    left = np.maximum(np.real(_diagonal(spectra.yy)) - _explained(spectra), 0.0)
     free = spectra.independent - spectra.yx.shape[2]
     return left * spectra.independent / max(free, 1.0)
 
@@ -125,6 +123,11 @@ def dependent_inputs(spectra: Spectra) -> list[Finding]:
     involved = [spectra.inputs[index].name for index in np.flatnonzero(np.abs(vectors[:, 0]) > 0.1)]
     what = f"{' and '.join(involved)} are not independent (smallest eigenvalue of the coherence matrix {max(values[0], 0.0):.1e})"
     return [Finding("inputs", what, "Drive them by independent noise, or omit all but one")]
+
+
+def _explained(spectra: Spectra) -> Array:
+    """Power densities (f, p) of the outputs that inputs explain."""
+    return np.real(np.sum(h1(spectra).values * np.conj(spectra.yx), axis=-1))
 
 
 def _diagonal(matrices: Array) -> Array:

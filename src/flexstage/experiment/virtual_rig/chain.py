@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.experiment.virtual_rig.inputs import InputSignal
 from flexstage.experiment.virtual_rig.plan import TAPER, Plan
@@ -153,7 +153,7 @@ def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:
     slowest = int(np.argmin(decays))
     if decays[slowest] <= 0.0:
         what = f"the mode at {omega[slowest] / (2.0 * np.pi):.4g} Hz has no damping: its vibration would never decay"
-        require([Finding("damping", what, "Specify damping, for example a modal ratio of 0.01")])
+        raise refuse("damping", what, "Specify damping, for example a modal ratio of 0.01")
     lags = sum(_FORGOTTEN / (2.0 * np.pi * float(np.min(each, initial=np.inf))) for each in (plan.bandwidths, plan.lags))
     order = plan.setup.filter.order
     filtering = _FORGOTTEN / (2.0 * np.pi * plan.corner * np.sin(0.5 * np.pi / order)) if order else 0.0
@@ -166,7 +166,7 @@ def _block(memory: float, rate: float) -> int:
     size = max(_SHORTEST, 2 ** int(np.ceil(np.log2(memory * rate))))
     if size > _LONGEST:
         what = f"vibrations decay too slowly (got {memory:.4g} s or {memory * rate:.3g} samples, expected {_LONGEST:.3g} samples at most)"
-        require([Finding("damping", what, "Use more damping, a lower rate, or a band that starts at 0 or at a higher frequency")])
+        raise refuse("damping", what, "Use more damping, a lower rate, or a band that starts at 0 or at a higher frequency")
     return size
 
 

@@ -24,15 +24,6 @@ class Reach:
     asked: tuple[float, float] | None = None
 
 
-def width(pole: complex) -> float:
-    """Compute the half-power bandwidth 2 zeta f of a resonance, in Hz, from its pole in Hz.
-
-    >>> width(-1.0 + 100.0j)
-    2.0
-    """
-    return -2.0 * pole.real
-
-
 def line_distance(known: Evidence) -> float:
     """Return the spacing in Hz of the frequency lines of the responses from which candidates are identified.
 
@@ -72,7 +63,7 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
     >>> coarse_lines(long, np.array([-0.2 + 10.0j])) is None
     True
     """
-    widths = np.array([width(pole) for pole in poles])
+    widths = -2.0 * np.real(poles)
     distances = known.apart(np.abs(poles)) if known.stored else np.full(len(poles), line_distance(known))
     if not np.any(distances > widths):
         return None

@@ -7,16 +7,9 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.experiment.identification.diagnosis.adequacy import Reach, coarse_lines, no_mode_warning, unsearched_band
 from flexstage.experiment.identification.evidence import Evidence
-from flexstage.experiment.records.record import Channel
-from flexstage.experiment.records.unit import same_dimension, unit_problem
+from flexstage.experiment.records.unit import derivative_order
 
 _MOST_ELSEWHERE = 0.5
-_MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
-
-
-def _is_motion(channel: Channel) -> bool:
-    """Whether a channel measures a velocity or an acceleration, the response to an unknown force."""
-    return bool(channel.unit) and unit_problem(channel.unit) is None and any(same_dimension(channel.unit, unit) for unit in _MOTIONS)
 
 
 def data_warnings(
@@ -58,7 +51,7 @@ def data_warnings(
             f"the fit leaves a systematic residual near {listed}. The mode may be nonlinear, close to another, excited by unrecorded "
             f"forces, or changing during the test. Test with a lower amplitude, a longer duration or finer frequency lines.{window}"
         )
-    moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
+    moved = [channel for channel in known.responses.inputs if derivative_order(channel.unit)]
     if moved:
         listed = ", ".join(f"{channel.name} ({channel.unit})" for channel in moved)
         found.append(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -57,8 +58,7 @@ def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) 
     return [local.drive() for local in kept]
 
 
-@dataclass(frozen=True, eq=False)
-class _Near:
+class _Near(NamedTuple):
     """Lines near a mode: their drive (n, m+b), the mode's motion (n,), and their complex distances (n,) from its pole in Hz."""
 
     drive: Array
@@ -108,7 +108,7 @@ class _Local:
         return Drive(found[:, 0], found[:, 1])
 
     def _tested(self, mode: int, inputs: int) -> tuple[float, float]:
-        joined = _Near(*(np.concatenate([getattr(part, name) for part in self.near[mode]]) for name in ("drive", "motion", "away")))
+        joined = _Near(*map(np.concatenate, zip(*self.near[mode], strict=True)))
         sensed = 1.0 / float(np.sum(np.abs(self.modal.shapes[:, mode]) ** 2 / self._noise(mode)))
         return _drive_chance(joined, inputs, sensed)
 

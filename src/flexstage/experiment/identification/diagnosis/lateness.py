@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.records.record import Channel, Role
-from flexstage.experiment.records.unit import same_dimension, unit_problem
+from flexstage.experiment.records.unit import derivative_order
 from flexstage.experiment.spectral.lines import Lines
 
 _LEAST_REAL, _SURE = 0.9, 5.0
@@ -37,15 +37,6 @@ class _Single:
 
     role: Role
     number: int
-
-
-@dataclass(frozen=True)
-class _Residue:
-    """Residues of a group: mean `square` over mean power (1 if all are imaginary), mean `pole`, `spread` of the phase."""
-
-    square: complex
-    pole: complex
-    spread: float
 
 
 def common_delay(found: Identified) -> Delay | None:
@@ -107,8 +98,7 @@ def _fit_delay(found: Identified, channel: _Single | None, near: float = 0.0, le
     terms = [_residue(found, group, channel) for group in _groups(found)] if len(found.frequencies) else []
     if not terms:
         return None
-    squares, poles = np.array([each.square for each in terms]), np.array([each.pole for each in terms])
-    spreads = np.array([each.spread for each in terms])
+    squares, poles, spreads = map(np.array, zip(*terms, strict=True))
     turning = np.abs(np.imag(poles))
     weights = 1.0 / (spreads**2 + _UNSURE**2)
     longest = (_FEW if np.sum(spreads < _KNOWN) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
@@ -163,8 +153,11 @@ def _groups(found: Identified) -> list[tuple[int, ...]]:
     return [*found.close, *((index,) for index in range(len(found.frequencies)) if index not in together)]
 
 
-def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None) -> _Residue:
-    """Residues of a group, or of one channel, with higher phase uncertainty for a small part in the mode."""
+def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None) -> tuple[complex, complex, float]:
+    """Mean square over mean power of a group's residues, or of one channel's (1 if all are imaginary), mean pole, spread of the phase.
+
+    The phase of a channel with a small part in the mode is more uncertain.
+    """
     chosen = list(group)
     pole = complex(np.mean(found.poles[chosen]))
     rates, driven = _rates(found.outputs, pole), _rates(found.inputs, pole)
@@ -176,17 +169,9 @@ def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None)
     square = complex(np.sum((scaled / 1j) ** 2)) / power if power else 0.0
     spread = float(np.min(found.frequency_deviations[chosen] / (found.damping[chosen] * found.frequencies[chosen])))
     part = 1.0 if channel is None else np.sqrt(power / scaled.size) + np.finfo(float).eps
-    return _Residue(square, pole, spread / part)
+    return square, pole, spread / part
 
 
 def _rates(channels: tuple[Channel, ...], pole: complex) -> Array:
     """Velocities or accelerations of a free decay over its motions, up to a positive factor: (p/|p|)^n; 1 for others."""
-    return np.array([(pole / abs(pole)) ** _derivative(channel.unit) for channel in channels])
-
-
-def _derivative(unit: str) -> int:
-    """Order of the measured derivative of a motion: 1 for velocities, 2 for accelerations, 0 for others."""
-    if not unit or unit_problem(unit) is not None:
-        return 0
-    units = (("m/s", "rad/s"), ("m/s^2", "rad/s^2"))
-    return next((order for order, each in enumerate(units, 1) if any(same_dimension(unit, name) for name in each)), 0)
+    return np.array([(pole / abs(pole)) ** derivative_order(channel.unit) for channel in channels])

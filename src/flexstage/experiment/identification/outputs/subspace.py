@@ -207,12 +207,17 @@ def _with_rows(band: Band, rows: int, highest_damping: float) -> tuple[Stabilisa
 def _poles(band: Band, observability: Array, order: int, outputs: int) -> Poles:
     state = np.linalg.lstsq(observability[:-outputs], observability[outputs:], rcond=None)[0]
     turns, vectors = np.linalg.eig(state)
-    values = np.log(turns) / band.step
-    values = np.real(values) + 1j * (np.mod(np.imag(values), 2.0 * np.pi / band.step) + 2.0 * np.pi * band.low)
+    values = _continuous(band, turns)
     shapes = (observability[:outputs] @ vectors).T
     kept = np.flatnonzero(np.real(values) < 0.0)
     kept = kept[np.argsort(np.imag(values)[kept])]
     return Poles(order, values[kept], shapes[kept] / np.linalg.norm(shapes[kept], axis=1, keepdims=True))
+
+
+def _continuous(band: Band, turns: Array) -> Array:
+    """Poles in rad/s from eigenvalues per lag, with the frequency shift of the band undone."""
+    values = np.log(turns) / band.step
+    return np.real(values) + 1j * (np.mod(np.imag(values), 2.0 * np.pi / band.step) + 2.0 * np.pi * band.low)
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,13 +244,12 @@ def _perturbed(band: Band, left: Array, right: Array, candidates: Sequence[Candi
     """Candidates as modes, each at its order of lowest error."""
     rows = len(left) // band.covariances.shape[2]
     blocks = [(hankel(each, rows, _SKIPPED) @ right, hankel(each, rows, _SKIPPED + 1) @ right) for each in band.covariances]
-    orders = [_of_order(band, left[:, :order], [(a[:, :order], b[:, :order]) for a, b in blocks], candidates) for order in _orders(left)]
+    orders = [
+        _of_order(band, left[:, :order], [(a[:, :order], b[:, :order]) for a, b in blocks], candidates)
+        for order in range(1, left.shape[1] + 1)
+    ]
     tracks = [[found[number] for found in orders if number in found] for number in range(len(candidates))]
     return [_select_order(track) for track in tracks if track]
-
-
-def _orders(left: Array) -> range:
-    return range(1, left.shape[1] + 1)
 
 
 def _of_order(band: Band, left: Array, blocks: Sequence[tuple[Array, Array]], candidates: Sequence[Candidate]) -> dict[int, _Estimate]:
@@ -255,8 +259,7 @@ def _of_order(band: Band, left: Array, blocks: Sequence[tuple[Array, Array]], ca
     inner = np.conj(left.T) @ own
     turns, vectors = np.linalg.eig(np.linalg.solve(inner, np.conj(left.T) @ shifted))
     rest = np.linalg.solve(inner @ vectors, np.conj(left.T))
-    poles = np.log(turns) / band.step
-    poles = (np.real(poles) + 1j * (np.mod(np.imag(poles), 2.0 * np.pi / band.step) + 2.0 * np.pi * band.low)) / (2.0 * np.pi)
+    poles = _continuous(band, turns) / (2.0 * np.pi)
     shapes = own[:outputs] @ vectors / band.scale[:, None]
     found: dict[int, _Estimate] = {}
     for number, place in _matches(poles, candidates).items():

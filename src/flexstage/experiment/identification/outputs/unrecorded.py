@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import refuse
 from flexstage.experiment.identification.cluster import vector_assurance
 from flexstage.experiment.identification.diagnosis.peaks import Peak, PeakCause, tone_peaks
 from flexstage.experiment.identification.identified import Identified
@@ -39,7 +39,7 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone. Participations are unknown:
     the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
-    require(_floor_findings(records))
+    _refuse_floor(records)
     record, tones = remove_tones(records[0].select(names_of(records[0].outputs)))
     resolution = BLOCKS / record.duration
     low = max(_LOWEST * resolution, search.band[0] if search.band else 0.0)
@@ -47,11 +47,11 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     where = record.where
     if low >= high:
         what = f"modes up to {high:.4g} Hz are requested, but the record shows only modes above {low:.4g} Hz"
-        require([Finding(where, what, "Request another band, or record longer")])
+        raise refuse(where, what, "Request another band, or record longer")
     began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=resolution)
     if low == np.inf:
         what = f"bands between {began:.4g} and {high:.4g} Hz have too few lines: a block lasts only a fortieth of {record.duration:.4g} s"
-        require([Finding(where, what, "Record longer (modes in floor noise need minutes), or request a wider band")])
+        raise refuse(where, what, "Record longer (modes in floor noise need minutes), or request a wider band")
     divisions, density = band_covariances(record, low, high)
     every = [[shaken_modes(band, search.highest_damping) for band in bands] for bands in divisions]
     poles = [[mode for _, found in division for mode in found] for division in every]
@@ -129,20 +129,14 @@ def identify_decay(records: Sequence[Record], search: Search) -> Identified:
     )
 
 
-def _floor_findings(records: Sequence[Record]) -> list[Finding]:
-    where = records[0].where
+def _refuse_floor(records: Sequence[Record]) -> None:
+    """Raise `DesignError` for several records, and for a record that is too short."""
     if len(records) > 1:
-        return [
-            Finding(
-                "--excitation floor",
-                f"wrong number of records (got {len(records)}, expected 1)",
-                "Use one record: the directions of the floor motion differ between records",
-            )
-        ]
+        what = f"wrong number of records (got {len(records)}, expected 1)"
+        raise refuse("--excitation floor", what, "Use one record: the directions of the floor motion differ between records")
     if records[0].length < BLOCKS * _FEWEST:
         what = f"too short (got {records[0].length} samples, expected {BLOCKS} blocks of {_FEWEST})"
-        return [Finding(where, what, "Record longer: modes in floor noise need minutes")]
-    return []
+        raise refuse(records[0].where, what, "Record longer: modes in floor noise need minutes")
 
 
 def _largest(record: Record) -> int:
@@ -179,13 +173,9 @@ def _result(record: Record, modes: Sequence[AmbientMode], density: Responses, ba
         stabilisation=(),
         band=band,
         noise=np.median(np.abs(density.values[in_band(density.frequencies, band), :, 0]) ** 2, axis=0),
-        data_warnings=(_UNSCALED, *_none(modes)),
+        data_warnings=(_UNSCALED, *([] if modes else ["no mode exceeds the noise of floor and gauges: record longer, or excite more."])),
         provenance=f"identified from outputs alone, in {record.where}: covariance-driven stochastic subspace",
     )
-
-
-def _none(modes: Sequence[AmbientMode]) -> list[str]:
-    return [] if len(modes) else ["no mode exceeds the noise of floor and gauges: record longer, or excite more."]
 
 
 def _peak(mode: AmbientMode, doubt: PeakCause, outputs: Sequence[Channel], resolution: float) -> Peak:
