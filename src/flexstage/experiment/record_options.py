@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, list_choices, refuse, require
 from flexstage.base.lazy import LazyModule
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 else:
     files = LazyModule("flexstage.experiment.formats.read")  # loops often have no record
 
+_Word = TypeVar("_Word", bound=Enum)
 RECORD = text_option("--record", "RECORD", "Record or frequency responses of a test. Repeatable.")
 Inputs: TypeAlias = Annotated[
     list[str] | None,
@@ -129,9 +130,9 @@ class RecordTexts:
             only=names(self.channels),
             rate=None if self.rate is None else _hertz("--rate", self.rate),
             units=units,
-            kind=None if kind is None else options.Kind(kind),
+            kind=kind,
             arrays=arrays,
-            accept_faults=frozenset(options.FaultTolerance(word) for word in accepted if word is not None),
+            accept_faults=frozenset(each for each in accepted if each is not None),
         )
 
     def require_unsaid(self) -> None:
@@ -218,12 +219,11 @@ def _arrays(texts: Sequence[str] | None, findings: list[Finding]) -> options.Arr
     return options.Arrays(**stated)
 
 
-def _word(option: str, word: str, kind: type[Enum], findings: list[Finding]) -> str | None:
-    known = [str(each.value) for each in kind]
-    if word in known:
-        return word
-    findings.append(Finding(f"{option} {word}", "unknown word", f"Use {list_choices(known)}"))
-    return None
+def _word(option: str, word: str, kind: type[_Word], findings: list[Finding]) -> _Word | None:
+    known = {str(each.value): each for each in kind}
+    if word not in known:
+        findings.append(Finding(f"{option} {word}", "unknown word", f"Use {list_choices(known)}"))
+    return known.get(word)
 
 
 def _hertz(option: str, text: str) -> float:

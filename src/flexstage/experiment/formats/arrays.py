@@ -127,8 +127,7 @@ class Contents:
 
     def texts(self, *names: str) -> tuple[str, ...]:
         """Return the list of strings with the first of these names that exists; empty if none exists."""
-        found = next((self.said[name] for name in names if name in self.said), ())
-        return found if isinstance(found, tuple) else (str(found),)
+        return _texts(next((self.said[name] for name in names if name in self.said), ()))
 
     def text(self, name: str) -> str:
         """Return the string with this name (a list of strings is joined by blanks); empty if absent."""
@@ -280,7 +279,7 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
         advice = 'Assign the time: "time=...", "rate=..." or "step=..." (option array), or specify the rate (option rate)'
         raise refuse(contents.where, f"times and rate are missing. {list_arrays(contents)}", advice)
     if time is None or options.rate:
-        return Clock(float(stated or 0.0), 0.0, ((0, 0),))
+        return Clock(float(stated or 0.0))
     times = time.samples(int(np.argmax(time.shape)))
     return determine_clock(times, options, f"{contents.where}: {time.name}", scale=contents.scale(time, TIME_SCALES), stated=stated)
 

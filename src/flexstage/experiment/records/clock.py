@@ -54,11 +54,14 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """Sampling clock: rate [Hz], time of the first sample [s], intervals without gaps: sample numbers (start, stop), start times [s]."""
+    """Sampling clock: rate [Hz], time of the first sample [s], intervals without gaps: sample numbers (start, stop), start times [s].
+
+    Without a list of intervals there is no gap.
+    """
 
     rate: float
-    start: float
-    stretches: tuple[tuple[int, int], ...]
+    start: float = 0.0
+    stretches: tuple[tuple[int, int], ...] = ()
     starts: tuple[float, ...] = ()
 
     @property

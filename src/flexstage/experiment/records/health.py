@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields, check_arguments
-from flexstage.base.finding import DesignError, Finding, suggest_nearest
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.experiment.records.numbers import Numbers, RecordNumbers, count_ends, explained_share, gather
@@ -81,6 +82,8 @@ class Examination(InNotebook):
 
 
 _NEEDS = RecordRequirements()
+_Problem: TypeAlias = tuple[FaultTolerance | None, str, str, str]
+"""Tolerance, channel (empty: the whole record), description and advice of a fault."""
 
 
 @check_arguments
@@ -97,15 +100,15 @@ def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examin
     ['record: S1: it is zero throughout. Check cable and range, or accept "dead" to omit the channel.']
     """
     found = gather(record)
-    where = record.where
     numbers = dict(zip(record.names, found.channels, strict=True))
-    faults = [
-        *_samples(record, found, where),
-        *_units(record.channels, where),
-        *_dependent(record, found, where),
-        *_roles(record, requirements, where),
-    ]
-    return Examination((*faults, *_extent(record, requirements, where)), numbers, found.stretch)
+    problems = (
+        *_samples(record, found),
+        *_units(record.channels),
+        *_dependent(record, found),
+        *_roles(record, requirements),
+        *_extent(record, requirements),
+    )
+    return Examination(tuple(_faults(record.where, problems)), numbers, found.stretch)
 
 
 def usable_record(
@@ -123,15 +126,11 @@ def usable_record(
     ('u1', 'S2')
     """
     found = examine(record, requirements)
-    refused = [fault.finding for fault in found.faults if fault.kind not in accept_faults]
-    if refused:
-        raise DesignError(refused)
+    require(fault.finding for fault in found.faults if fault.kind not in accept_faults)
     dropped = found.channels({FaultTolerance.DEAD, FaultTolerance.DEPENDENT, FaultTolerance.NAMES})
     kept = record.select([name for name in record.names if name not in dropped]) if dropped else record
-    where = record.where
-    left = [fault.finding for fault in _roles(kept, RecordRequirements(unrecorded=requirements.unrecorded), where)]
-    if left:
-        raise DesignError(left)
+    roles = _roles(kept, RecordRequirements(unrecorded=requirements.unrecorded))
+    require(fault.finding for fault in _faults(record.where, roles))
     if not any(found.numbers[name].broken for name in kept.names):
         return kept
     return kept.part(*(gather(kept).stretch if dropped else found.stretch))
@@ -144,36 +143,38 @@ def responses_findings(responses: Responses, requirements: RecordRequirements = 
     >>> [fault.finding.what for fault in responses_findings(one, RecordRequirements(highest=5.0))]
     ['its responses end at 2 Hz, below the highest mode at 5 Hz']
     """
-    where = responses.where
-    faults = [
-        *_units((*responses.outputs, *responses.inputs), where),
-        *_name_faults(responses.inputs, responses.outputs, requirements, where),
+    return _faults(responses.where, _response_problems(responses, requirements))
+
+
+def _faults(where: str, problems: Iterable[_Problem]) -> list[Fault]:
+    return [
+        Fault(kind, channel, Finding(f"{where}: {channel}" if channel else where, what, advice)) for kind, channel, what, advice in problems
     ]
+
+
+def _response_problems(responses: Responses, requirements: RecordRequirements) -> Iterator[_Problem]:
+    yield from _units((*responses.outputs, *responses.inputs))
+    yield from _name_faults(responses.inputs, responses.outputs, requirements)
     frequencies = responses.frequencies
     if (falling := rising_problem(frequencies)) is not None:
-        faults.append(_fault(None, where, "", falling, "Export each frequency once, from the lowest to the highest"))
+        yield None, "", falling, "Export each frequency once, from the lowest to the highest"
     elif requirements.highest is not None and requirements.highest > frequencies[-1]:
         what = f"its responses end at {frequencies[-1]:g} Hz, below the highest mode at {requirements.highest:g} Hz"
-        faults.append(_fault(FaultTolerance.SLOW, where, "", what, 'Measure a wider band, or accept "slow" to use the available band'))
+        yield FaultTolerance.SLOW, "", what, 'Measure a wider band, or accept "slow" to use the available band'
     if responses.coherence is not None:
-        faults += _coherence(responses.coherence, where)
-    return faults
+        yield from _coherence(responses.coherence)
 
 
-def _fault(kind: FaultTolerance | None, where: str, channel: str, what: str, advice: str) -> Fault:
-    return Fault(kind, channel, Finding(f"{where}: {channel}" if channel else where, what, advice))
-
-
-def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
+def _coherence(coherence: Array) -> Iterator[_Problem]:
     """Findings for coherence above 1, as some analysers write it for few averages."""
     outside = int(np.sum(~((coherence >= 0.0) & (coherence <= 1.0 + 1e-6))))
     if outside:
         low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
         what = f"its coherence ranges from {low:g} to {high:g}: {outside} of {coherence.size} values are outside 0 to 1"
-        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check the export, or accept "clipped" to limit the coherence to 0 to 1')
+        yield FaultTolerance.CLIPPED, "", what, 'Check the export, or accept "clipped" to limit the coherence to 0 to 1'
 
 
-def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
+def _samples(record: Record, found: RecordNumbers) -> Iterator[_Problem]:
     for channel, numbers in zip(record.channels, found.channels, strict=True):
         name = channel.name
         if numbers.broken:
@@ -181,24 +182,24 @@ def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault
         if numbers.broken == record.length:
             continue
         if (windowed := _force_window(record, channel, numbers)) is not None:
-            yield _fault(FaultTolerance.WINDOWED, where, name, windowed, _UNWINDOWED)
+            yield FaultTolerance.WINDOWED, name, windowed, _UNWINDOWED
         elif (dead := _dead(record, channel, numbers) or _faint(record, found, channel, numbers)) is not None:
-            yield _fault(FaultTolerance.DEAD, where, name, dead, 'Check cable and range, or accept "dead" to omit the channel')
+            yield FaultTolerance.DEAD, name, dead, 'Check cable and range, or accept "dead" to omit the channel'
         elif (clipped := _clipped(record, channel, numbers)) is not None:
             size = "wider" if clipped.startswith("it is clipped") else "smaller"
             advice = f'Record with a {size} range, or accept "clipped" to use the channel unchanged'
-            yield _fault(FaultTolerance.CLIPPED, where, name, clipped, advice)
+            yield FaultTolerance.CLIPPED, name, clipped, advice
 
 
-def _broken_samples(record: Record, name: str, numbers: Numbers, stretch: tuple[int, int]) -> Fault:
+def _broken_samples(record: Record, name: str, numbers: Numbers, stretch: tuple[int, int]) -> _Problem:
     start, stop = stretch
     first = record.start + numbers.first_broken / record.rate
     what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"
     if numbers.broken > _BROKEN_SHARE * record.length:
-        return _fault(FaultTolerance.DEAD, record.where, name, what, 'Record it again, or accept "dead" to omit the channel')
+        return FaultTolerance.DEAD, name, what, 'Record it again, or accept "dead" to omit the channel'
     length = f"{stop - start} samples ({(stop - start) / record.rate:.4g} s)"
     advice = f'The longest finite stretch has {length}: accept "gaps" to use only this stretch'
-    return _fault(FaultTolerance.GAPS, record.where, name, what, advice)
+    return FaultTolerance.GAPS, name, what, advice
 
 
 def _stands_still(record: Record, numbers: Numbers) -> bool:
@@ -221,8 +222,7 @@ def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
 
 def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | None:
     """Findings for a force that is exactly zero after an impact, as some analysers set it: the later force is unknown."""
-    known = channel.unit and unit_problem(channel.unit) is None
-    force = same_dimension(channel.unit, "N") if known else matches(channel.name, _HAMMERS)
+    force = same_dimension(channel.unit, "N") if unit_problem(channel.unit) is None else matches(channel.name, _HAMMERS)
     zeros = _stands_still(record, numbers) and numbers.still_at == 0.0 and numbers.still_from > 0 and numbers.low != numbers.high
     if not zeros or not force or channel.role is Role.OUTPUT:
         return None
@@ -257,14 +257,14 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers) -> str | None:
     return None
 
 
-def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
+def _units(channels: Iterable[Channel]) -> Iterator[_Problem]:
     for channel in channels:
         if (problem := unit_problem(channel.unit)) is not None:
             advice = 'Specify it (option units), e.g. "S*=um", or accept "units" to use the numbers unchanged'
-            yield _fault(FaultTolerance.UNITS, where, channel.name, problem, advice)
+            yield FaultTolerance.UNITS, channel.name, problem, advice
 
 
-def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
+def _dependent(record: Record, found: RecordNumbers) -> Iterator[_Problem]:
     """Inputs explained by the others, one at a time, until the others are independent."""
     names = names_of(record.inputs)
     alive = [number for number in range(len(names)) if np.real(found.input_spectra[:, number, number]).sum() > 0.0]
@@ -276,7 +276,7 @@ def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fau
         name = names[alive.pop(worst)]
         what = f"{100.0 * shares[worst]:.3g} % of its power is explained by the other inputs, {', '.join(names[k] for k in alive)}"
         advice = 'Drive the inputs with independent noise, or accept "dependent" to omit this input: the other inputs explain its effect'
-        yield _fault(FaultTolerance.DEPENDENT, where, name, what, advice)
+        yield FaultTolerance.DEPENDENT, name, what, advice
 
 
 def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
@@ -285,47 +285,43 @@ def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
     return np.maximum(0.0, (shares - lost) / (1.0 - lost))
 
 
-def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
+def _roles(record: Record, requirements: RecordRequirements) -> Iterator[_Problem]:
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
             advice = 'Specify it (options inputs, outputs), or accept the fault "names", which omits the channel'
-            yield _fault(FaultTolerance.NAMES, where, channel.name, "its role is unknown", advice)
+            yield FaultTolerance.NAMES, channel.name, "its role is unknown", advice
     if requirements.unrecorded and record.inputs:
         what = f"the excitation is unrecorded, but the record has inputs: {', '.join(names_of(record.inputs))}"
-        yield _fault(None, where, "", what, "Select only outputs (option channels), or omit the excitation")
+        yield None, "", what, "Select only outputs (option channels), or omit the excitation"
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
         if not channels and not (requirements.unrecorded and kind == "input"):
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
             other = ", or specify the excitation (option excitation)" if kind == "input" else ""
-            yield _fault(None, where, "", what, f"Specify the {kind}s (option {kind}s) by names or patterns{other}")
-    yield from _name_faults(record.inputs, record.outputs, requirements, where)
+            yield None, "", what, f"Specify the {kind}s (option {kind}s) by names or patterns{other}"
+    yield from _name_faults(record.inputs, record.outputs, requirements)
 
 
-def _name_faults(
-    inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], requirements: RecordRequirements, where: str
-) -> Iterator[Fault]:
+def _name_faults(inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], requirements: RecordRequirements) -> Iterator[_Problem]:
     """Findings for channels that the stage does not have, and units that contradict the stage's channels."""
     for kind, channels, expected in (("input", inputs, requirements.inputs), ("output", outputs, requirements.outputs)):
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
             if channel.name not in known:
                 advice = f'{suggest_nearest(channel.name, known)}; rename the channel, or accept the fault "names", which omits it'
-                yield _fault(FaultTolerance.NAMES, where, channel.name, f"unknown {kind}", advice)
+                yield FaultTolerance.NAMES, channel.name, f"unknown {kind}", advice
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"wrong unit (got {channel.unit}, expected {known[channel.name]}, the unit of the stage's {kind})"
-                yield _fault(
-                    FaultTolerance.UNITS, where, channel.name, what, 'Specify its unit, or accept "units" to use the numbers unchanged'
-                )
+                yield FaultTolerance.UNITS, channel.name, what, 'Specify its unit, or accept "units" to use the numbers unchanged'
 
 
-def _extent(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
+def _extent(record: Record, requirements: RecordRequirements) -> Iterator[_Problem]:
     resolution, averages, highest = requirements.resolution, requirements.averages, requirements.highest
     if resolution is not None and record.duration * resolution < averages:
         got = f"(got {record.duration * resolution:.3g} in {record.duration:.4g} s, expected {averages})"
         what = f"too few averages at a resolution of {resolution:g} Hz {got}"
         advice = f'Request a resolution of {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
-        yield _fault(FaultTolerance.SHORT, where, "", what, advice)
+        yield FaultTolerance.SHORT, "", what, advice
     if highest is not None and record.rate <= 2.0 * highest:
         what = f"it is sampled at {record.rate:g} Hz, not above twice the frequency of the highest mode, {highest:g} Hz"
         advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to identify only modes below {0.42 * record.rate:g} Hz'
-        yield _fault(FaultTolerance.SLOW, where, "", what, advice)
+        yield FaultTolerance.SLOW, "", what, advice

@@ -150,12 +150,11 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
     function = found.function
     if function.is_even:
         own = OWN.match(function.texts[4])
-        whole = ((0, found.values.length),)
         if own and refines(own["start"], function.first) and refines(own["rate"], function.step, inverse=True):
-            return Clock(float(own["rate"]), float(own["start"]), whole)
-        return Clock(function.rate, function.first, whole)
+            return Clock(float(own["rate"]), float(own["start"]))
+        return Clock(function.rate, function.first)
     if options.rate:
-        return Clock(options.rate, 0.0, ((0, found.values.length),))
+        return Clock(options.rate)
     return determine_clock(found.values, options, f"{path}: {name}")
 
 
