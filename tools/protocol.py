@@ -16,8 +16,8 @@ _WORDS = {int: "number", float: "number", str: "string", bool: "boolean", type(N
 
 def written() -> str:
     """The text of protocol.ts as the classes are now."""
-    asked, said = get_args(protocol.Request), get_args(protocol.Said)
-    kinds = [each for each in vars(protocol).values() if is_dataclass(each) and isinstance(each, type)]
+    kinds = [each for each in vars(protocol).values() if is_dataclass(each) and isinstance(each, type) and not each.__subclasses__()]
+    asked, said = ([each for each in kinds if issubclass(each, base)] for base in (protocol.Request, protocol.Said))
     interfaces = [_interface(each, message=each in (*asked, *said)) for each in kinds]
     head = "// Written by `python -m tools.protocol` from src/flexstage/apps/studio/protocol.py. Do not edit.\n"
     unions = [_union("Request", asked), _union("Said", said)]
@@ -25,7 +25,7 @@ def written() -> str:
     return "\n".join([head, about + f"export const VERSION = {protocol.VERSION};\n", *interfaces, *unions])
 
 
-def _union(name: str, kinds: tuple[Any, ...]) -> str:
+def _union(name: str, kinds: list[Any]) -> str:
     return "\n  | ".join([f"export type {name} =", *(each.__name__ for each in kinds)]) + ";\n"
 
 

@@ -22,6 +22,12 @@ def array(value: say.Floats) -> np.ndarray:
     return np.frombuffer(base64.b64decode(value.data), dtype="<f8").reshape(value.shape)
 
 
+def leaves(base):
+    """The messages of a base class."""
+    below = base.__subclasses__()
+    return [kind for each in below for kind in leaves(each)] if below else [base]
+
+
 class Page:
     """One window: `told` are the newest pushes by kind, `counts` how many of each there were, `engine` all that the engine did."""
 

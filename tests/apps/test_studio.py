@@ -62,7 +62,7 @@ from flexstage.studies.synthesis.answers import design as find_designs
 from flexstage.studies.synthesis.show.tables import answer_tables
 from flexstage.studies.synthesis.specification import loads_specification
 from tests.analytic.test_load_effect import upright
-from tests.apps.studio_page import PATIENCE, array, opened, served
+from tests.apps.studio_page import PATIENCE, array, leaves, opened, served
 
 THICKNESS = "parts.leaf.thickness"
 TEXT = dumps(parallelogram(), {"": "A guide.", "parts.leaf": "thin"})
@@ -128,7 +128,7 @@ def test_figures_of_a_stage_whose_weight_is_felt_are_those_of_its_analysis():
     text = dumps(upright(2.5))
     stage = loads(text)
     model = loaded_model(stage, Model.LUMPED)
-    told, found, heard = figures(text, "", text, 1, ((), (), None, None)), modes(model), response(model, ("platform",), ("ground.z",))
+    told, found, heard = figures(text, "", text, ((), (), None, None)), modes(model), response(model, ("platform",), ("ground.z",))
     assert told.loading == load_effect(stage).text != ""
     assert told.modes[0].frequency == pytest.approx(2.26569, rel=1e-4)
     assert [each.frequency for each in told.modes] == pytest.approx(found.frequencies[: len(told.modes)], rel=1e-9)
@@ -437,7 +437,7 @@ async def test_what_is_asked_about_the_stage(page, studio):
 
 
 def test_what_numbers_buy_are_derivatives_of_what_is_shown():
-    told = slopes(TEXT, "guide.toml", 1, 1)
+    told = slopes(TEXT, "guide.toml")
     row = next(each for each in told.slopes if each.address == THICKNESS)
     step = 1e-8
     low, high = (modes(lumped(loads(patch(TEXT, {THICKNESS: 1e-3 + way})))) for way in (-step, step))
@@ -453,7 +453,7 @@ def test_what_numbers_buy_are_derivatives_of_what_is_shown():
 def test_what_numbers_buy_of_a_platform_mode_above_local_modes():
     """The tilt of tip-tilt is the seventh mode of all: 1 % of each number against central differences."""
     stage = replace(case("tip-tilt"), requirements={"frequency.platform.1": "at least 100 Hz"})
-    row = slopes(dumps(stage), "tip-tilt.toml", 1, 1).slopes[0]
+    row = slopes(dumps(stage), "tip-tilt.toml").slopes[0]
     value = get(stage, row.address)
     low, high = (judge(set_value(stage, row.address, value * (1.0 + way)))[0].margin for way in (-1e-5, 1e-5))
     assert row.worst == pytest.approx(float(high - low) / 2e-5 * 0.01, rel=1e-3)
@@ -463,7 +463,7 @@ def test_what_numbers_buy_of_a_platform_mode_above_local_modes():
 @on_page
 async def test_what_numbers_buy_is_worked_out_beside(page, studio):
     told = await page.ask(say.Derive)
-    assert [each.address for each in told.slopes] == [each.address for each in slopes(TEXT, "guide.toml", 1, 1).slopes]
+    assert [each.address for each in told.slopes] == [each.address for each in slopes(TEXT, "guide.toml").slopes]
 
 
 def test_gaps_are_those_that_are_drawn():
@@ -515,7 +515,7 @@ def test_modes_of_finite_elements_stand_beside_those_that_move_like_them(monkeyp
     found = modes(model, limit=_limit())
     slower = replace(found, frequencies=found.frequencies / 1.1)
     monkeypatch.setattr(solids, "fea_modes_from_cache", lambda *_: FeaModes(slower, model, 3, (0.001,)))
-    told = solids.solid_modes(TEXT, "guide.toml", 5, 1)
+    told = solids.solid_modes(TEXT, "guide.toml")
     assert [each.number for each in told.modes] == [index + 1 for index in found.platform]
     assert [each.theory for each in told.modes] == [each.number for each in told.modes]
     assert [each.difference for each in told.modes] == pytest.approx([0.1] * len(told.modes), rel=1e-9)
@@ -523,7 +523,7 @@ def test_modes_of_finite_elements_stand_beside_those_that_move_like_them(monkeyp
     assert [each.error for each in told.modes][:2] == [0.001, None]
     assert {each.motion["group"] for each in told.modes} == {"mode"}
     monkeypatch.setattr(solids, "fea_modes_from_cache", lambda *_: None)
-    assert "start Verify to compute them" in solids.solid_modes(TEXT, "guide.toml", 5, 1).missing
+    assert "start Verify to compute them" in solids.solid_modes(TEXT, "guide.toml").missing
 
 
 def test_a_number_that_is_set_is_what_patch_writes():
@@ -541,7 +541,7 @@ def test_strokes_stress_and_buckling_at_rest_are_those_of_the_workspace(stage):
     text = dumps(stage)
     whole = workspace(stage, ideal(stage), lumped(stage), lost=lost_motion(ideal(stage), lumped(stage)))
     wanted = [*whole.corrected.symmetric.tolist(), float(whole.stress.min_safety), float(whole.buckling.min_factor)]
-    told = reach(text, "", text, 1)
+    told = reach(text, "", text)
     assert [each.value for each in told.figures] == wanted
     assert ([each.low for each in told.strokes], told.missing) == (whole.corrected.low.tolist(), {})
 
@@ -550,7 +550,7 @@ def test_a_path_counts_from_where_the_stage_rests_and_tells_how_far_it_is():
     """Two upright leaves sag under 2.5 kg: motion counts from there, as that of the command does, and is the same point by point."""
     stage, told = upright(2.5), []
     asked = say.Travel(7, "platform.x", "", "1 mm", 3, (), "")
-    found = travelled(dumps(stage), "", 1, asked, told.append)
+    found = travelled(dumps(stage), "", asked, told.append)
     assert [each.fraction for each in told] == pytest.approx([0.1, 1.0])
     assert ([each.request for each in told], told[-1].text) == ([7] * 2, "3 of 3 points")
     model = nonlinear(stage)
@@ -570,11 +570,11 @@ def test_a_path_of_the_design_is_brought_as_it_is_stated():
     """Its own drive, ends, points and loads, whatever stands in the form; one that the design does not state is refused."""
     text = dumps(replace(upright(2.5), paths={"out": StrokePath("platform.x", ("-1 mm", "1 mm"), 3, {"platform.y": "1 N"})}))
     assert read(text, "", text).paths == ("out",)
-    found = travelled(text, "", 1, say.Travel(7, "platform.z", "", "9 mm", 50, (), "out"), lambda _: None)
+    found = travelled(text, "", say.Travel(7, "platform.z", "", "9 mm", 50, (), "out"), lambda _: None)
     curves = {each["name"]: np.frombuffer(base64.b64decode(each["values"]), "<f4") for each in found.motions[0]["course"]["curves"]}
     assert curves["platform.x"].tolist() == [-1.0, 0.0, 1.0]
     with pytest.raises(DesignError, match=r"paths\.back: unknown path\. Use out"):
-        travelled(text, "", 1, say.Travel(7, "platform.z", "", "9 mm", 50, (), "back"), lambda _: None)
+        travelled(text, "", say.Travel(7, "platform.z", "", "9 mm", 50, (), "back"), lambda _: None)
 
 
 @on_page
@@ -661,7 +661,7 @@ async def test_random_requests_are_answered_and_none_of_them_is_a_failure_of_the
             return {value(str): value(inner[1]) for _ in range(chance.randrange(3))}
         return chance.choice(some[hint]) if hint in some else chance.random() < 0.5 if hint is bool else None
 
-    kinds = sorted({*get_args(say.Request)} - {say.Hello, say.Run, say.Derive, say.Travel, say.Save}, key=lambda each: each.__name__)
+    kinds = sorted({*leaves(say.Request)} - {say.Hello, say.Run, say.Derive, say.Travel, say.Save}, key=lambda each: each.__name__)
     for _ in range(400 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 40):
         kind = chance.choice(kinds)
         fields = {name: value(hint) for name, hint in get_type_hints(kind).items() if name != "id"}
@@ -837,7 +837,7 @@ together = true
 
 @on_page
 async def test_a_specification_keeps_its_comments_and_has_all_errors_by_address(page, studio):
-    assert loads_specification(specify(1, "", "", "").text) is not None
+    assert loads_specification(specify("", "", "").text) is not None
     found = await page.ask(say.Specify, text=SPECIFICATION, file="", values="")
     assert (found.text, found.problems) == (SPECIFICATION, ())
     assert found.values["requirements"] == {"frequency": "at least 500 Hz", "drift.z": "at most 1 um/K"}

@@ -88,7 +88,7 @@ class Server:
     def answer(self, said: dict[str, Any]) -> None:
         refusal = self.refuses.get(said["kind"])
         job = 1 if said["kind"] == "run" else None
-        self.say(Done(said["id"], 1, job) if refusal is None else Refusal(said["id"], refusal.problems, refusal.stale))
+        self.say(replace(Done(1, job) if refusal is None else refusal, to=said["id"]))
 
     def say(self, *messages: Any) -> None:
         assert self.socket is not None
@@ -111,7 +111,7 @@ def state(revision: int, text: str = TEXT, *, page: int = 0, problems: tuple[Pro
 
 def verdicts(revision: int) -> Verdicts:
     found = Judgement("frequency.1", "at least 50 Hz", "", "Hz", "Hz", 1.0, 50.0, 60.0, 60.0, 0.2, True, "", 6)
-    return Verdicts(revision, (found,), 1.0)
+    return Verdicts((found,), 1.0, revision=revision)
 
 
 @pytest.fixture(scope="module")
@@ -161,17 +161,17 @@ def test_the_first_message_is_the_token_which_leaves_the_address(page: Page, ser
 def test_what_is_not_drawn_as_it_is_is_said(page: Page, server: Server) -> None:
     notes = ["drawn without holes: platform.block", "no drift: no material is stated"]
     drawn = {**still_data(parallelogram()).document(), "notes": notes}
-    server.say(Scene(1, drawn))
+    server.say(Scene(drawn, revision=1))
     until(page, lambda: page.inner_text("#told") == notes[0])
-    server.say(Scene(2, {**drawn, "notes": []}))
+    server.say(Scene({**drawn, "notes": []}, revision=2))
     until(page, lambda: not page.is_visible("#told"))
 
 
 def test_frequencies_of_the_drawn_stage_do_not_stand_in_rows_of_the_loaded_one(page: Page, server: Server) -> None:
     """Four loaded modes at rest, three of the drawn stage while a slider moves: no row shows a number of another stage."""
     rows = tuple(Figure(f"frequency.platform.{number}", "frequency", "Hz", "Hz", 1.0, 10.0 * number, None) for number in range(1, 5))
-    told = Figures(1, rows, None, None, (), (), None, (), "", {}, 0.0)
-    moved = Frequencies(0, THICKNESS, 5e-4, (11.5, 21.5, 31.5, None), ())
+    told = Figures(rows, None, None, (), (), None, (), "", {}, revision=1)
+    moved = Frequencies(THICKNESS, 5e-4, (11.5, 21.5, 31.5, None), ())
     shown = "() => [...document.querySelectorAll('#pane-figures [data-figure]')].map((each) => each.textContent)"
     server.say(told, moved)
     until(page, lambda: page.evaluate(shown)[:3] == ["11.5", "21.5", "31.5"])
@@ -214,8 +214,8 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     """While a text has errors, and until the results of the mended one are there."""
     chips = "() => ['engine', 'sound'].map((each) => document.getElementById(each).classList.contains('good'))"
     colours = "() => [...document.querySelectorAll('#verdicts .pill, #verdicts tr b')].map((each) => getComputedStyle(each).color)"
-    figures = Figures(1, (), None, None, (), (), None, (), "", {}, 0.0)
-    server.say(Engine("ready", "", None), figures, Slopes(0, 1, "frequency.1", (Slope(THICKNESS, "m", 5e-4, {}, 0.01),), {}))
+    figures = Figures((), None, None, (), (), None, (), "", {}, revision=1)
+    server.say(Engine("ready", "", None), figures, Slopes("frequency.1", (Slope(THICKNESS, "m", 5e-4, {}, 0.01),), {}, revision=1))
     until(page, lambda: page.inner_text("#amounts .buys") == "+1")
     assert page.locator("#amounts.aged").count() == 0
     until(page, lambda: page.evaluate(chips) == [True, True])
@@ -269,7 +269,7 @@ def test_save_waits_for_what_was_typed(page: Page, server: Server) -> None:
 
 
 def test_another_pages_text_is_never_merged_with_what_is_typed(page: Page, server: Server) -> None:
-    server.refuses = {"edit": Refusal(0, (Problem("text", "another page changed it", ""),), True)}
+    server.refuses = {"edit": Refusal((Problem("text", "another page changed it", ""),), True)}
     page.locator("#editor .cm-content").click()
     page.keyboard.press("Control+End")
     page.keyboard.type("# mine")
@@ -320,7 +320,7 @@ def test_what_is_chosen_of_the_palette_is_asked_with_its_fields(page: Page, serv
     server.holds = {"palette"}
     page.locator("#tabs button", has_text="Build").click()
     until(page, lambda: bool(server.of("palette")))
-    server.say(Snippets(server.of("palette")[0]["id"], (wire,)))
+    server.say(Snippets((wire,), to=server.of("palette")[0]["id"]))
     page.locator("#pane-build summary").click()
     page.locator("#pane-build input").first.fill("thread")
     page.get_by_role("button", name="insert").click()
@@ -334,7 +334,7 @@ def test_the_study_that_is_offered_can_be_run(page: Page, server: Server, tmp_pa
     server.holds = {"jobform"}
     page.locator("#commands").get_by_role("button", name=name).click()
     until(page, lambda: bool(server.of("jobform")))
-    server.say(Blank(server.of("jobform")[0]["id"], name.lower(), form(name.lower())))
+    server.say(Blank(name.lower(), form(name.lower()), to=server.of("jobform")[0]["id"]))
     assert page.get_by_label("seed", exact=True).get_attribute("placeholder") == "default: 0"
     page.get_by_label("seed", exact=True).fill("7")
     page.get_by_label("from", exact=True).last.fill("-5 %")
@@ -355,7 +355,7 @@ def test_a_form_of_a_set_up_writes_only_what_was_filled_in(page: Page, server: S
     server.holds = {"jobform"}
     page.locator("#commands").get_by_role("button", name="Loop").click()
     until(page, lambda: bool(server.of("jobform")))
-    server.say(Blank(server.of("jobform")[0]["id"], "loop", form("loop")))
+    server.say(Blank("loop", form("loop"), to=server.of("jobform")[0]["id"]))
     page.get_by_label("rate", exact=True).first.fill("5 kHz")
     page.locator("form.run summary", has_text="controller").click()
     page.get_by_label("coordinates", exact=True).select_option("modal")
@@ -377,7 +377,7 @@ def test_options_are_a_form_and_runs_are_compared_by_their_key_figures(page: Pag
     server.holds = {"jobform"}
     page.locator("#commands").get_by_role("button", name="Verify").click()
     until(page, lambda: bool(server.of("jobform")))
-    server.say(Blank(server.of("jobform")[0]["id"], "verify", form("verify")))
+    server.say(Blank("verify", form("verify"), to=server.of("jobform")[0]["id"]))
     assert page.get_by_label("--accuracy", exact=True).get_attribute("placeholder") == "default: 1 %"
     page.get_by_label("--accuracy", exact=True).fill("5 %")
     page.get_by_role("button", name="Start verify").click()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib import import_module
 from typing import Any
@@ -82,7 +82,10 @@ def work(line: Line, task: str, *arguments: Any) -> Outcome:
     except Exception as error:  # noqa: BLE001 (a failed task must not stop the others)
         traceback.print_exc()
         value, problems = None, (failure(task, error),)
-    return Outcome(value, problems, time.process_time() - start)
+    seconds = time.process_time() - start
+    if value is not None and hasattr(value, "milliseconds"):
+        value = replace(value, milliseconds=1e3 * seconds)
+    return Outcome(value, problems, seconds)
 
 
 def _located(error: DesignError, arguments: tuple[Any, ...]) -> tuple[Problem, ...]:

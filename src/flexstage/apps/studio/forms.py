@@ -57,7 +57,7 @@ def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
     return {"description": default_last(meaning), "examples": [value], **kind, **many}
 
 
-def specify(number: int, text: str, file: str, values: str) -> Specified:
+def specify(text: str, file: str, values: str) -> Specified:
     """Read the text of a specification and return it with its values and errors.
 
     An example replaces an empty text. `values` (TOML) replace values in the text; `file` is the path of the specification.
@@ -80,7 +80,7 @@ def specify(number: int, text: str, file: str, values: str) -> Specified:
             spot = spot_of(each, file)
             where = "specification" if spot.address in (file, "file", "") else spot.address
             problems.append(Problem(where, each.what, each.advice, spot.line, spot.column))
-    return Specified(number, text, json.loads(json.dumps(tree, default=str)), tuple(problems))
+    return Specified(text, json.loads(json.dumps(tree, default=str)), tuple(problems))
 
 
 def _with_values(text: str, values: str, tree: Mapping[str, Any]) -> str:

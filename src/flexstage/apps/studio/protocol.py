@@ -8,17 +8,25 @@ messages are pushed to all pages when their contents change. Numbers are in SI u
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from dataclasses import dataclass, field
+from typing import Any, Literal, dataclass_transform
 
 VERSION = 6
 """Version of the protocol, which is increased if a message changes its meaning."""
 
+
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+class MessagePart:
+    """Base class of messages and their parts: every subclass is a frozen dataclass."""
+
+    def __init_subclass__(cls) -> None:
+        dataclass(frozen=True)(cls)
+
+
 # --- parts of messages ---
 
 
-@dataclass(frozen=True)
-class Problem:
+class Problem(MessagePart):
     """A finding: its object or address, the problem and the advice; line and column count from 1, null if unknown."""
 
     where: str
@@ -28,8 +36,7 @@ class Problem:
     column: int | None = None
 
 
-@dataclass(frozen=True)
-class Amount:
+class Amount(MessagePart):
     """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` is `factor` SI units.
 
     `low` and `high` are the ends of the slider, within the bounds of the number. `formula` defines the number. `old` is the value in the
@@ -52,8 +59,7 @@ class Amount:
     tag: str
 
 
-@dataclass(frozen=True)
-class Channel:
+class Channel(MessagePart):
     """An actuator, an axis of the platform or a gauge, with the ends of its range if known. One display `unit` is `factor` units `si`."""
 
     name: str
@@ -64,8 +70,7 @@ class Channel:
     high: float | None
 
 
-@dataclass(frozen=True)
-class Figure:
+class Figure(MessagePart):
     """A result: its `name` as in requirements, its group, its value in `si`, and the `old` value of the file on disk."""
 
     name: str
@@ -77,8 +82,7 @@ class Figure:
     old: float | None
 
 
-@dataclass(frozen=True)
-class Matrix:
+class Matrix(MessagePart):
     """A matrix with names of rows and columns. `unit` is a single unit for all entries, or a unit for each entry."""
 
     rows: tuple[str, ...]
@@ -87,16 +91,14 @@ class Matrix:
     values: tuple[tuple[float | None, ...], ...]
 
 
-@dataclass(frozen=True)
-class Floats:
+class Floats(MessagePart):
     """An array of 64-bit floats, little-endian, in base64; the last axis runs fastest."""
 
     shape: tuple[int, ...]
     data: str
 
 
-@dataclass(frozen=True)
-class ModeShape:
+class ModeShape(MessagePart):
     """A mode: the platform's `twist` (x y z rx ry rz, m and rad) in the mass-normalised shape, and its `share` of the kinetic energy.
 
     `kinetic` contains the fractions of kinetic energy in bodies, `strain` contains the fractions of strain energy in links. The largest
@@ -114,8 +116,7 @@ class ModeShape:
     strain: dict[str, float]
 
 
-@dataclass(frozen=True)
-class SolidMode:
+class SolidMode(MessagePart):
     """A platform mode by finite elements: `error` is the estimated relative error of its frequency, `motion` contains data for a viewer.
 
     `theory` is the number of the paired mode of the lumped model; null without a pair. `theory_frequency` [Hz] is the frequency of the
@@ -134,8 +135,7 @@ class SolidMode:
     motion: Any
 
 
-@dataclass(frozen=True)
-class Curve:
+class Curve(MessagePart):
     """Frequency response of an output to an input: magnitude in `unit`, phase in degrees, at the listed frequencies."""
 
     input: str
@@ -145,8 +145,7 @@ class Curve:
     phase: Floats
 
 
-@dataclass(frozen=True)
-class Loss:
+class Loss(MessagePart):
     """Lost motion of an actuator: its transmission ratio `gain` (1 is ideal), its `loss`, and the contribution of each link to the loss."""
 
     actuator: str
@@ -155,8 +154,7 @@ class Loss:
     budget: dict[str, float]
 
 
-@dataclass(frozen=True)
-class Judgement:
+class Judgement(MessagePart):
     """A requirement: its key and text, its limit and value in `si`, its margin (0.1 is 10 %), and the `reason` if the value is unknown."""
 
     key: str
@@ -174,8 +172,7 @@ class Judgement:
     line: int | None
 
 
-@dataclass(frozen=True)
-class Stroke:
+class Stroke(MessagePart):
     """Stroke of the platform along a coordinate, and the actuator or stop that limits it."""
 
     coordinate: str
@@ -184,8 +181,7 @@ class Stroke:
     limiting: str
 
 
-@dataclass(frozen=True)
-class Slope:
+class Slope(MessagePart):
     """Sensitivity to a number: derivatives of figures, and the change of the lowest margin (`worst`) if the number increases by 1 %."""
 
     address: str
@@ -195,8 +191,7 @@ class Slope:
     worst: float | None
 
 
-@dataclass(frozen=True)
-class Clash:
+class Clash(MessagePart):
     """Two separate bodies, and the `distance` [m] between them, which is negative for an overlap."""
 
     first: str
@@ -205,8 +200,7 @@ class Clash:
     text: str
 
 
-@dataclass(frozen=True)
-class Screw:
+class Screw(MessagePart):
     """A motion of the platform as a screw: its twist, and its axis in a unit `direction` through `point`.
 
     `pitch` [m/rad] is null for a pure translation. `links` of a free motion are the links that deform. `links` of a locked motion are the
@@ -221,8 +215,7 @@ class Screw:
     links: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Snippet:
+class Snippet(MessagePart):
     """A snippet of the palette: `text` is TOML with `{name}` in place of each field; `fields` contains their initial values by name."""
 
     name: str
@@ -232,8 +225,7 @@ class Snippet:
     fields: dict[str, str]
 
 
-@dataclass(frozen=True)
-class PairRow:
+class PairRow(MessagePart):
     """A pair of architecture and actuator in a design job: its `goal` or the `reason` for its failure, and its `file` name (or empty)."""
 
     architecture: str
@@ -243,8 +235,7 @@ class PairRow:
     file: str
 
 
-@dataclass(frozen=True)
-class ResultTable:
+class ResultTable(MessagePart):
     """A table of a result as text: the first row contains the column heads."""
 
     title: str
@@ -252,8 +243,7 @@ class ResultTable:
     notes: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class JobState:
+class JobState(MessagePart):
     """A job: its state, the completed `fraction`, the estimated time `left` [s], the last output lines `said`, and its results.
 
     `report` is the address of its report, null without a report. A job of the command `design` also has the finished `pairs` and, when it
@@ -273,8 +263,7 @@ class JobState:
     tables: tuple[ResultTable, ...] = ()
 
 
-@dataclass(frozen=True)
-class Draft:
+class Draft(MessagePart):
     """The unsaved text of an ended studio: the `time` of its last change [s since 1970]. If `stale`, the file changed after this time."""
 
     name: str
@@ -282,8 +271,7 @@ class Draft:
     stale: bool
 
 
-@dataclass(frozen=True)
-class Fact:
+class Fact(MessagePart):
     """A line of a card: its name, and its value as text with the unit."""
 
     name: str
@@ -293,107 +281,92 @@ class Fact:
 # --- requests of the page ---
 
 
-@dataclass(frozen=True)
-class Hello:
+class Request(MessagePart):
+    """A message of the page."""
+
+
+class NumberedRequest(Request):
+    """A request with its number."""
+
+    id: int
+
+
+class Hello(Request):
     """The first message of a page, with the token from its address."""
 
     token: str
     version: int
 
 
-@dataclass(frozen=True)
-class Edit:
+class Edit(NumberedRequest):
     """The text as typed. Refused if another page changed the text after `revision`, the last revision that this page knows."""
 
-    id: int
     text: str
     revision: int
 
 
-@dataclass(frozen=True)
-class Set:
+class Set(NumberedRequest):
     """Set a number: a value in any unit of its quantity, a formula, or a relative change (`+10 %`)."""
 
-    id: int
     address: str
     text: str
 
 
-@dataclass(frozen=True)
-class Drag:
+class Drag(NumberedRequest):
     """Report the value of a moving slider. The answer is `Frequencies`; the text does not change."""
 
-    id: int
     address: str
     value: float
 
 
-@dataclass(frozen=True)
-class Rest:
+class Rest(NumberedRequest):
     """Report the value of a released slider, which is written into the text."""
 
-    id: int
     address: str
     value: float
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NumberedRequest):
     """Request for the card of a link (`B1/front`)."""
 
-    id: int
     link: str
 
 
-@dataclass(frozen=True)
-class Line:
+class Line(NumberedRequest):
     """Request for the entries at a line of the text."""
 
-    id: int
     line: int
 
 
-@dataclass(frozen=True)
-class Respond:
+class Respond(NumberedRequest):
     """Choose the frequency responses. Without a band, the frequencies are chosen so that every resonance is visible."""
 
-    id: int
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     low: float | None
     high: float | None
 
 
-@dataclass(frozen=True)
-class Jog:
+class Jog(NumberedRequest):
     """Request for the linear maps between strokes, platform motion and gauge readings."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Pose:
+class Pose(NumberedRequest):
     """Request for the displacement at given strokes or forces of the actuators, with readings, stress, and exceeded limits."""
 
-    id: int
     inputs: dict[str, float]
 
 
-@dataclass(frozen=True)
-class Derive:
+class Derive(NumberedRequest):
     """Request for the sensitivities to each number."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Travel:
+class Travel(NumberedRequest):
     """Move the stage along a load path at large displacements: `drive` from `start` to `end` (with units) under `loads` (NAME=VALUE).
 
     If `path` names a load path of the design, its drive, ends, points and loads are used instead.
     """
 
-    id: int
     drive: str
     start: str
     end: str
@@ -402,99 +375,67 @@ class Travel:
     path: str
 
 
-@dataclass(frozen=True)
-class Halt:
+class Halt(NumberedRequest):
     """Abort the computation of the load path."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Free:
+class Free(NumberedRequest):
     """Request for the platform's free motions, redundant constraints, and locked motions."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Gaps:
+class Gaps(NumberedRequest):
     """Request for overlaps and gaps between bodies."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Solid:
+class Solid(NumberedRequest):
     """Request for the platform's modes by finite elements, if a verification has stored them in the cache."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Pin:
+class Pin(NumberedRequest):
     """Store the present design under a name (A, B, C). If `keep` is false, remove the design pinned under this name."""
 
-    id: int
     name: str
     keep: bool
 
 
-@dataclass(frozen=True)
-class Compare:
+class Compare(NumberedRequest):
     """Request for a comparison of the results of the file, the pinned designs and the present design."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Recall:
+class Recall(NumberedRequest):
     """Make the text of a pinned design the present text. The empty name selects the text of the file."""
 
-    id: int
     name: str
 
 
-@dataclass(frozen=True)
-class Undo:
+class Undo(NumberedRequest):
     """Restore the text before the last change."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Redo:
+class Redo(NumberedRequest):
     """Restore the text before the last undo."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Save:
+class Save(NumberedRequest):
     """Write the text to its file, or to another `file` of its folder.
 
     The request is refused if the file has changed on disk, or if the other file exists, unless `over` allows overwriting.
     """
 
-    id: int
     over: bool
     file: str = ""
 
 
-@dataclass(frozen=True)
-class Browse:
+class Browse(NumberedRequest):
     """Request for the files of the folder, and the shipped cases."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Open:
+class Open(NumberedRequest):
     """Open a file of the folder. If a shipped `case`, or a `pair` of a design `job`, is named, its design is first written to the file.
 
     Refused if there are unsaved changes, unless `discard` is true.
     """
 
-    id: int
     file: str
     case: str
     discard: bool
@@ -502,104 +443,103 @@ class Open:
     pair: str
 
 
-@dataclass(frozen=True)
-class Reload:
+class Reload(NumberedRequest):
     """Read the text from disk. The present text remains in undo."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Recover:
+class Recover(NumberedRequest):
     """Restore an unsaved text of an ended studio from `State.drafts`. If `keep` is false, discard the text."""
 
-    id: int
     draft: str
     keep: bool
 
 
-@dataclass(frozen=True)
-class Palette:
+class Palette(NumberedRequest):
     """Request for the snippets."""
 
-    id: int
 
-
-@dataclass(frozen=True)
-class Insert:
+class Insert(NumberedRequest):
     """Insert a snippet with its fields filled in."""
 
-    id: int
     snippet: str
     fields: dict[str, str]
 
 
-@dataclass(frozen=True)
-class Look:
+class Look(NumberedRequest):
     """Report the panes that a page shows. After a change, only shown panes are computed. Other panes are computed when they are shown.
 
     The pane `stage` is the picture, `motions` contains its motions, and `reach` contains strokes and strength.
     """
 
-    id: int
     panes: tuple[Literal["stage", "motions", "reach"], ...]
 
 
-@dataclass(frozen=True)
-class JobForm:
+class JobForm(NumberedRequest):
     """Request for the form of a command."""
 
-    id: int
     command: Literal["sweep", "optimise", "verify", "identify", "loop", "design"]
 
 
-@dataclass(frozen=True)
-class Specify:
+class Specify(NumberedRequest):
     """Check the `text` of a specification, in which `values` (TOML) from the form replace values.
 
     An empty text is replaced by the text of `file` in the folder. Without a file, the last text is used (initially an example).
     """
 
-    id: int
     text: str
     file: str
     values: str
 
 
-@dataclass(frozen=True)
-class SaveSpecification:
+class SaveSpecification(NumberedRequest):
     """Write a specification to a file of the folder. Refused if the file exists, unless `over` allows overwriting."""
 
-    id: int
     text: str
     file: str
     over: bool
 
 
-@dataclass(frozen=True)
-class Run:
+class Run(NumberedRequest):
     """Start a command as a job. `study` is a study, set-up or specification as text; `record` is the path of a record file."""
 
-    id: int
     command: Literal["analyse", "sweep", "optimise", "verify", "identify", "loop", "design"]
     study: str | None
     record: str | None
     options: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Cancel:
+class Cancel(NumberedRequest):
     """End a job."""
 
-    id: int
     job: int
 
 
 # --- messages of the server ---
 
 
-@dataclass(frozen=True)
-class Welcome:
+class Said(MessagePart):
+    """A message of the server."""
+
+
+class StudioAnswer(Said):
+    """The answer to the request with the number `to`, which the session sets."""
+
+    to: int = field(default=0, kw_only=True)
+
+
+class DesignMessage(Said):
+    """A result for a revision, which the session sets."""
+
+    revision: int = field(default=0, kw_only=True)
+
+
+class DesignAnswer(StudioAnswer):
+    """The answer for a revision, which the session sets."""
+
+    revision: int = field(default=0, kw_only=True)
+
+
+class Welcome(Said):
     """The page was admitted."""
 
     version: int
@@ -608,8 +548,7 @@ class Welcome:
     pages: int
 
 
-@dataclass(frozen=True)
-class State:
+class State(Said):
     """The text and its contents, sent to all pages after every change. `digest` is the digest of the file on disk.
 
     If `sound`, the design has no error; otherwise, `problems` lists the errors, and all numbers are from the last text without errors.
@@ -644,8 +583,7 @@ class State:
     drafts: tuple[Draft, ...]
 
 
-@dataclass(frozen=True)
-class Engine:
+class Engine(Said):
     """State of the computing process, its task `text`, and the expected duration [s]. If `ended`, the process crashed and was restarted."""
 
     state: Literal["starts", "ready", "computes", "ended"]
@@ -653,33 +591,27 @@ class Engine:
     seconds: float | None
 
 
-@dataclass(frozen=True)
-class Scene:
+class Scene(DesignMessage):
     """The geometry of a revision for the viewer. The motions are left out if no page shows them."""
 
-    revision: int
     data: Any
 
 
-@dataclass(frozen=True)
-class Frequencies:
+class Frequencies(StudioAnswer):
     """The platform frequencies [Hz] for a moving slider, null where unknown."""
 
-    to: int
     address: str
     value: float
     frequencies: tuple[float | None, ...]
     problems: tuple[Problem, ...]
 
 
-@dataclass(frozen=True)
-class Figures:
+class Figures(DesignMessage):
     """Results of a revision. `missing` contains the reason for each missing result. `frequency` (f,) is the frequency axis of all curves.
 
     `loading` describes the effect of a significant permanent load; stiffness, modes and curves then belong to the loaded stage.
     """
 
-    revision: int
     figures: tuple[Figure, ...]
     stiffness: Matrix | None
     compliance: Matrix | None
@@ -689,39 +621,32 @@ class Figures:
     curves: tuple[Curve, ...]
     loading: str
     missing: dict[str, str]
-    milliseconds: float
+    milliseconds: float = 0.0
 
 
-@dataclass(frozen=True)
-class Verdicts:
+class Verdicts(DesignMessage):
     """The requirements of a revision."""
 
-    revision: int
     verdicts: tuple[Judgement, ...]
-    milliseconds: float
+    milliseconds: float = 0.0
 
 
-@dataclass(frozen=True)
-class Reach:
+class Reach(DesignMessage):
     """Platform strokes of a revision, and safety factors of its flexures against stress and buckling."""
 
-    revision: int
     figures: tuple[Figure, ...]
     strokes: tuple[Stroke, ...]
     missing: dict[str, str]
-    milliseconds: float
+    milliseconds: float = 0.0
 
 
-@dataclass(frozen=True)
-class Warnings:
+class Warnings(DesignMessage):
     """Warnings and default values of a revision. The server sends this message last for each revision."""
 
-    revision: int
     warnings: tuple[Problem, ...]
 
 
-@dataclass(frozen=True)
-class Card:
+class Card(StudioAnswer):
     """A link: its part, its lines in the text, its 6x6 matrices about the part's centre in the link frame, its stress and lost motion.
 
     `stress` [Pa] is the peak over all strokes, `limit` is the allowable stress. `shares` contains the link's contribution to the lost
@@ -729,7 +654,6 @@ class Card:
     validated range of beam theory. `verified` compares the link with stored results of finite elements.
     """
 
-    to: int
     link: str
     part: str
     part_kind: str
@@ -749,19 +673,16 @@ class Card:
     missing: dict[str, str]
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(StudioAnswer):
     """Entries at a line: its links and bodies, and the addresses of its numbers."""
 
-    to: int
     line: int
     links: tuple[str, ...]
     bodies: tuple[str, ...]
     addresses: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Motion:
+class Motion(DesignAnswer):
     """Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` are the actuator inputs per unit twist.
 
     `gauges` contains the readings per unit input; `ideal` is the platform twist per unit input of the ideal stage. `stress` (links x
@@ -769,8 +690,6 @@ class Motion:
     magnitudes over all inputs. `allowed` contains the allowable stresses.
     """
 
-    to: int
-    revision: int
     platform: Matrix
     inputs: Matrix | None
     ideal: Matrix | None
@@ -781,30 +700,24 @@ class Motion:
     missing: dict[str, str]
 
 
-@dataclass(frozen=True)
-class Posed:
+class Posed(StudioAnswer):
     """The stage at given strokes: platform twist, readings, and stress of each link. `beyond` names and describes exceeded limits."""
 
-    to: int
     twist: tuple[float, ...]
     readings: dict[str, float]
     stress: dict[str, float]
     beyond: dict[str, str]
 
 
-@dataclass(frozen=True)
-class Slopes:
+class Slopes(DesignAnswer):
     """Sensitivities, sorted by their effect on `worst`, the requirement with the lowest margin."""
 
-    to: int
-    revision: int
     worst: str
     slopes: tuple[Slope, ...]
     missing: dict[str, str]
 
 
-@dataclass(frozen=True)
-class Underway:
+class Underway(Said):
     """Progress of the load path of a page's `request`: the completed fraction, and a text."""
 
     request: int
@@ -812,22 +725,16 @@ class Underway:
     text: str
 
 
-@dataclass(frozen=True)
-class Travelled:
+class Travelled(DesignAnswer):
     """A load path of a revision. `motions` for the viewer are the path itself, then the modes at its last stable point."""
 
-    to: int
-    revision: int
     motions: Any
     warnings: tuple[Problem, ...]
 
 
-@dataclass(frozen=True)
-class Freedoms:
+class Freedoms(DesignAnswer):
     """Free motions, redundant constraints, free internal modes, locked motions, and locked strokes (`blocked`)."""
 
-    to: int
-    revision: int
     mobility: int
     free: tuple[Screw, ...]
     redundant: tuple[Fact, ...]
@@ -836,160 +743,72 @@ class Freedoms:
     blocked: tuple[Fact, ...]
 
 
-@dataclass(frozen=True)
-class Clearances:
+class Clearances(DesignAnswer):
     """Overlaps and gaps between bodies, the largest overlap first. `problems` are violations of aperture and envelope."""
 
-    to: int
-    revision: int
     clashes: tuple[Clash, ...]
     problems: tuple[Problem, ...]
 
 
-@dataclass(frozen=True)
-class SolidModes:
+class SolidModes(DesignAnswer):
     """Platform modes by finite elements. Without modes, `missing` is the reason."""
 
-    to: int
-    revision: int
     modes: tuple[SolidMode, ...]
     missing: str
 
 
-@dataclass(frozen=True)
-class Comparison:
+class Comparison(StudioAnswer):
     """Figures of designs: one row for each figure, one column for each design, null for a missing figure."""
 
-    to: int
     designs: tuple[str, ...]
     figures: tuple[Figure, ...]
     values: tuple[tuple[float | None, ...], ...]
 
 
-@dataclass(frozen=True)
-class Snippets:
+class Snippets(StudioAnswer):
     """The palette."""
 
-    to: int
     snippets: tuple[Snippet, ...]
 
 
-@dataclass(frozen=True)
-class Folder:
+class Folder(StudioAnswer):
     """The design files and specifications of the folder, and the shipped cases with their summaries."""
 
-    to: int
     files: tuple[str, ...]
     specifications: tuple[str, ...]
     cases: dict[str, str]
 
 
-@dataclass(frozen=True)
-class Blank:
+class Blank(StudioAnswer):
     """The form of a command, as the JSON Schema of its study, set-up or options."""
 
-    to: int
     command: str
     schema: Any
 
 
-@dataclass(frozen=True)
-class Specified:
+class Specified(StudioAnswer):
     """A specification: its text, its values (null if the text cannot be read), and its errors by address."""
 
-    to: int
     text: str
     values: Any
     problems: tuple[Problem, ...]
 
 
-@dataclass(frozen=True)
-class Jobs:
+class Jobs(Said):
     """All jobs, pushed after each progress report."""
 
     jobs: tuple[JobState, ...]
 
 
-@dataclass(frozen=True)
-class Done:
+class Done(StudioAnswer):
     """A completed request without a result: the revision of the text, and the number of a new job."""
 
-    to: int
     revision: int
     job: int | None = None
 
 
-@dataclass(frozen=True)
-class Refusal:
+class Refusal(StudioAnswer):
     """A refused request. If `stale`, another page or program has changed the text or the file."""
 
-    to: int
     problems: tuple[Problem, ...]
     stale: bool = False
-
-
-Request: TypeAlias = (
-    Hello
-    | Edit
-    | Set
-    | Drag
-    | Rest
-    | Part
-    | Line
-    | Respond
-    | Jog
-    | Pose
-    | Derive
-    | Travel
-    | Halt
-    | Free
-    | Gaps
-    | Solid
-    | Pin
-    | Compare
-    | Recall
-    | Undo
-    | Redo
-    | Save
-    | Browse
-    | Open
-    | Reload
-    | Recover
-    | Palette
-    | Insert
-    | Look
-    | JobForm
-    | Specify
-    | SaveSpecification
-    | Run
-    | Cancel
-)
-Said: TypeAlias = (
-    Welcome
-    | State
-    | Engine
-    | Scene
-    | Frequencies
-    | Figures
-    | Verdicts
-    | Reach
-    | Warnings
-    | Card
-    | Place
-    | Motion
-    | Posed
-    | Slopes
-    | Underway
-    | Travelled
-    | Freedoms
-    | Clearances
-    | SolidModes
-    | Comparison
-    | Snippets
-    | Folder
-    | Blank
-    | Specified
-    | Jobs
-    | Done
-    | Refusal
-)

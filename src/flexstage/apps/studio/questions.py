@@ -59,7 +59,7 @@ _MOST_GAPS = 60
 _PLATFORM = tuple(f"platform.{name}" for name in COMPONENTS)
 
 
-def card(text: str, file: str, to: int, name: str) -> Card:
+def card(text: str, file: str, name: str) -> Card:
     """Return the card of a link."""
     known = bench(text, file)
     links: Mapping[str, PlacedLink | PlacedSuperelement] = {**known.assembly.links, **known.assembly.superelements}
@@ -77,7 +77,6 @@ def card(text: str, file: str, to: int, name: str) -> Card:
     verified = () if own is None else _verified(known.mechanism, own)
     told = (each for each in part_warnings(known.mechanism) if each.where.partition(".")[0] in (name, link.drawn, part, link.link.part))
     return Card(
-        to,
         name,
         link.link.part,
         inner(link.part).kind,
@@ -102,7 +101,7 @@ def _verified(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
     return hinge_facts(mechanism, link)
 
 
-def place(text: str, file: str, to: int, line: int) -> Place:
+def place(text: str, file: str, line: int) -> Place:
     """Return the links, bodies and numbers that belong to a line."""
     found, lines = design(text, file), line_numbers(text)
     near = max((row for row in lines.values() if row <= line), default=0)
@@ -112,7 +111,7 @@ def place(text: str, file: str, to: int, line: int) -> Place:
     links += [name for name, link in expand(found).links.items() if link.link.part in parts and name not in links]
     bodies = [name for name in expand(found).bodies if any(f"{head}.".startswith(f"{_drawn_body(found, name)}.") for head in heads)]
     inside = (each for each in addresses(found) if line_of(each, lines) == near)
-    return Place(to, line, tuple(links), tuple(bodies), tuple(inside))
+    return Place(line, tuple(links), tuple(bodies), tuple(inside))
 
 
 def _drawn_body(mechanism: Mechanism, name: str) -> str:
@@ -122,7 +121,7 @@ def _drawn_body(mechanism: Mechanism, name: str) -> str:
     return f"units.{copies[copy]}.bodies.{own}" if copy in copies else f"bodies.{name}"
 
 
-def motion(text: str, file: str, to: int, revision: int) -> Motion:
+def motion(text: str, file: str) -> Motion:
     """Compute the linear maps between inputs, platform motion and gauge readings, and the stress of every link."""
     known, attempt = bench(text, file), Attempts()
     model = known.model
@@ -130,8 +129,6 @@ def motion(text: str, file: str, to: int, revision: int) -> Motion:
     gauges = tuple(known.assembly.gauges)
     bearing = attempt.of("stress", lambda: _bearing(text, file))
     return Motion(
-        to,
-        revision,
         matrix(static_gain(model, _PLATFORM, inputs)),
         attempt.of("inputs", lambda: _inputs(known)),
         attempt.of("ideal", lambda: _ideal(known)),
@@ -143,7 +140,7 @@ def motion(text: str, file: str, to: int, revision: int) -> Motion:
     )
 
 
-def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
+def posed(text: str, file: str, inputs: Mapping[str, float]) -> Posed:
     """Compute motion, readings and stress for strokes and forces relative to the bias, and list exceeded limits."""
     known = bench(text, file)
     names, gauges = known.model.actuators, tuple(known.assembly.gauges)
@@ -161,10 +158,10 @@ def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
     for name, value in found.items():
         if value > limits[name]:
             beyond[name] = f"stress {format_value(value, 'Pa')} exceeds the allowable {format_value(limits[name], 'Pa')}"
-    return Posed(to, tuple(twist.tolist()), dict(zip(gauges, readings.tolist(), strict=True)), found, beyond)
+    return Posed(tuple(twist.tolist()), dict(zip(gauges, readings.tolist(), strict=True)), found, beyond)
 
 
-def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
+def slopes(text: str, file: str) -> Slopes:
     """Compute exact derivatives of frequencies and losses, and the effect of a 1 % change of each number on the lowest margin."""
     known = bench(text, file)
     found = sensitivities(known.mechanism, modes=12)
@@ -179,10 +176,10 @@ def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
         rows.append(Slope(address, found.units[place_], float(found.values[place_]), dict(gained), margins.get(address)))
     rows.sort(key=lambda each: -abs(each.worst or 0.0))
     missing = dict(found.missing) | ({} if worst is not None else {"worst": "no requirement has a value"})
-    return Slopes(to, revision, "" if worst is None else worst.requirement.key, tuple(rows), missing)
+    return Slopes("" if worst is None else worst.requirement.key, tuple(rows), missing)
 
 
-def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
+def freedoms(text: str, file: str) -> Freedoms:
     """Compute the platform's free and locked motions as screws, redundant constraints, free internal modes and locked strokes."""
     known = bench(text, file)
     found = known.kinematics
@@ -198,15 +195,15 @@ def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
         for name, each in found.blocked.items()
     )
     locked = tuple(_locked(found.motion, known))
-    return Freedoms(to, revision, found.mobility, free, redundant, idle, locked, blocked)
+    return Freedoms(found.mobility, free, redundant, idle, locked, blocked)
 
 
-def clearances(text: str, file: str, to: int, revision: int) -> Clearances:
+def clearances(text: str, file: str) -> Clearances:
     """Compute overlaps and gaps between separate outlines, and violations of aperture and envelope."""
     found = design(text, file)
     rows = sorted(gaps(found, _WITHIN), key=lambda each: each.distance)[:_MOST_GAPS]
     told = tuple(Clash(each.first, each.second, each.distance, _gap_text(each.distance)) for each in rows)
-    return Clearances(to, revision, told, problems_of(bench(text, file).clearance.findings, text, file))
+    return Clearances(told, problems_of(bench(text, file).clearance.findings, text, file))
 
 
 def _gap_text(distance: float) -> str:

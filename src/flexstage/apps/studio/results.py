@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
@@ -46,7 +45,7 @@ from flexstage.apps.studio.protocol import (
     Warnings,
 )
 from flexstage.apps.studio.wire import floats
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.labelled import quiet
 from flexstage.base.number import Array
@@ -72,37 +71,24 @@ Choice = tuple[tuple[str, ...], tuple[str, ...], float | None, float | None]
 """Inputs, outputs and band [Hz] of the shown frequency responses; without names, those of the first actuator."""
 
 
-class Timer:
-    """Timer of the CPU time since its creation [ms]."""
-
-    def __init__(self) -> None:
-        self._start = time.process_time()
-
-    @property
-    def spent(self) -> float:
-        """CPU time so far [ms]."""
-        return 1e3 * (time.process_time() - self._start)
-
-
 @SESSION.keep(8)
 def bench(text: str, file: str) -> StageResults:
     """Return the results of a design, which are computed on first use."""
     return bench_of(design(text, file))
 
 
-def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
+def figures(text: str, file: str, stored: str, choice: Choice) -> Figures:
     """Compute stiffness, modes, responses and lost motion. Results are for the loaded stage if its permanent load is significant.
 
     Old values are those of the text `stored` on disk.
     """
-    timer, known, attempt = Timer(), bench(text, file), Attempts()
+    known, attempt = bench(text, file), Attempts()
     stiff = attempt.of("stiffness", lambda: statics(known.under_load.model))
     lost = attempt.of("loss", lambda: known.under_load.lost)
     found = attempt.of("modes", lambda: known.under_load.modes)
     response = attempt.of("response", lambda: _response(known, choice))
     missing = {**attempt.missing, **({} if stiff is None else stiff.reasons)}
     return Figures(
-        revision,
         tuple(_with_old(_key_figures(found, stiff, lost), "figures", stored, text, file)),
         None if stiff is None else matrix(stiff.stiffness),
         None if stiff is None else matrix(stiff.compliance),
@@ -112,36 +98,33 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
         () if response is None else tuple(_curves(response)),
         "" if found is None else _loading(known),
         missing,
-        timer.spent,
     )
 
 
-def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
+def verdicts(text: str, file: str, stored: str) -> Verdicts:
     """Compute the verdicts on all requirements."""
-    timer, lines = Timer(), line_numbers(text)
+    lines = line_numbers(text)
     old = {each.requirement.text: each for each in _stored_verdicts(stored, file)} if stored != text else {}
-    found = tuple(_judgement(each, old.get(each.requirement.text, each), lines) for each in judged(text, file))
-    return Verdicts(revision, found, timer.spent)
+    return Verdicts(tuple(_judgement(each, old.get(each.requirement.text, each), lines) for each in judged(text, file)))
 
 
-def reach(text: str, file: str, stored: str, revision: int) -> Reach:
+def reach(text: str, file: str, stored: str) -> Reach:
     """Compute the platform strokes, and the safety factors of hinges and columns."""
-    timer, (found, missing) = Timer(), _reached(text, file)
-    known = bench(text, file)
+    (found, missing), known = _reached(text, file), bench(text, file)
     strokes = tuple(_held(known) if known.forced else () if found[0] is None else _strokes(found[0]))
-    return Reach(revision, tuple(_with_old(reach_figures(*found), "reach", stored, text, file)), strokes, missing, timer.spent)
+    return Reach(tuple(_with_old(reach_figures(*found), "reach", stored, text, file)), strokes, missing)
 
 
-def errors(text: str, file: str) -> tuple[Problem, ...]:
-    """Return the errors that prevent a model of a readable design, as `flexstage check` prints them."""
+def errors(text: str, file: str) -> None:
+    """Raise `DesignError` with the errors that prevent a model of a readable design, as `flexstage check` prints them."""
     from flexstage.analysis.caveats import model_findings
 
-    return problems_of(model_findings(design(text, file)), text, file)
+    require(model_findings(design(text, file)))
 
 
-def warnings(text: str, file: str, revision: int) -> Warnings:
+def warnings(text: str, file: str) -> Warnings:
     """Return the warnings about a design, and the default values that it uses."""
-    return Warnings(revision, _doubts(text, file))
+    return Warnings(_doubts(text, file))
 
 
 @SESSION.keep(8)

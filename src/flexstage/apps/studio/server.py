@@ -21,6 +21,7 @@ from flexstage import show
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.design.history import Stored
 from flexstage.apps.studio.design.journal import Journal
+from flexstage.apps.studio.engine import problem
 from flexstage.apps.studio.session import Session
 from flexstage.apps.studio.wire import decode, encode
 from flexstage.base.finding import DesignError, refuse
@@ -187,8 +188,7 @@ class Studio:
         try:
             request = decode(text)
         except DesignError as error:
-            found = error.findings[0]
-            outbox.put(say.Refusal(0, (say.Problem(found.where, found.what, found.advice),)))
+            outbox.put(say.Refusal((problem(error.findings[0]),)))
             return
         if not isinstance(request, say.Hello):
             self._start(self.session.answer(request, page, outbox.put))

@@ -123,16 +123,17 @@ class Session:
 
     async def answer(self, request: Any, page: int, tell: Tell) -> None:
         """Answer a request of a page through `tell`: with its result, a refusal, or `Done` if the request has no result."""
+        computed = self._computed
         try:
-            told = await self._answers[type(request)](self, request, page, tell)
+            told = await self._answers[type(request)](self, request, page, tell) or say.Done(self.history.revision)
         except RefusedError as error:
-            tell(say.Refusal(request.id, error.args[0]))
+            told = say.Refusal(error.args[0])
         except DesignError as error:
-            tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=isinstance(request, say.Edit | say.Save)))
+            told = say.Refusal(tuple(map(problem, error.findings)), stale=isinstance(request, say.Edit | say.Save))
         except Exception as error:  # noqa: BLE001 (a failed request must not stop the others)
-            tell(say.Refusal(request.id, (failure(type(request).__name__.lower(), error),)))
-        else:
-            tell(told or say.Done(request.id, self.history.revision))
+            told = say.Refusal((failure(type(request).__name__.lower(), error),))
+        known = {"revision": computed} if isinstance(told, say.DesignAnswer) else {}
+        tell(replace(told, to=request.id, **known))
 
     async def _edit(self, request: say.Edit, page: int, _: Tell) -> None:
         """Accept the page's text; refused after a change by another page unknown to this one."""
@@ -168,10 +169,10 @@ class Session:
         self._protect()
         self._start(self._read())
 
-    async def _browse(self, request: say.Browse, *_: Any) -> say.Said:
+    async def _browse(self, *_: Any) -> say.Said:
         paths = sorted(each for each in self.stored.path.parent.glob("[!.]*.toml") if each.is_file())
         specifications = tuple(each.name for each in paths if b'"flexstage specification ' in each.read_bytes())
-        return say.Folder(request.id, tuple(each.name for each in paths), specifications, await self._task_value(self._quick, "gallery"))
+        return say.Folder(tuple(each.name for each in paths), specifications, await self._task_value(self._quick, "gallery"))
 
     async def _open(self, request: say.Open, *_: Any) -> None:
         path = self._in_folder(request.file)
@@ -242,7 +243,7 @@ class Session:
             raise refuse(request.name, "no design is pinned under this name", suggest_nearest(request.name, self.history.pins))
         self._take(self.history.change(texts[request.name], page))
 
-    async def _compare(self, request: say.Compare, *_: Any) -> say.Said:
+    async def _compare(self, *_: Any) -> say.Said:
         """Figures of the file, of all pinned designs and of the present one."""
         texts = {"file": self.stored.text, **self.history.pins, "now": self._design}
         tables = [await self._task_value(self._model, "compared", text, self._file) for text in texts.values()]
@@ -250,50 +251,50 @@ class Session:
         by_name = [{each.name: each.value for each in table} for table in tables]
         rows = tuple(_row(each, by_name[-1].get(name), by_name[0].get(name)) for name, each in known.items())
         values = tuple(tuple(table.get(name) for table in by_name) for name in known)
-        return say.Comparison(request.id, tuple(texts), rows, values)
+        return say.Comparison(tuple(texts), rows, values)
 
     async def _drag(self, request: say.Drag, *_: Any) -> say.Said | None:
         """Frequencies at a slider's position; for requests faster than the answers, the newest."""
         call = ("drag", self._design, self._file, request.address, request.value)
         outcome = await self._quick.ask(*call, wanted=self._is_newest(request))
-        return outcome and say.Frequencies(request.id, request.address, request.value, outcome.value or (), outcome.problems)
+        return outcome and say.Frequencies(request.address, request.value, outcome.value or (), outcome.problems)
 
     async def _pose(self, request: say.Pose, *_: Any) -> say.Said | None:
-        return await self._task_value_while(self._is_newest(request), self._model, "posed", request.id, request.inputs)
+        return await self._task_value_while(self._is_newest(request), self._model, "posed", request.inputs)
 
     async def _ask(self, request: Any, *_: Any) -> say.Said:
         """The result of one task, for the request or the computed design."""
         helper = self._quick if isinstance(request, say.Line) else self._model
         _id, *own = vars(request).values()
-        return await self._task_value(helper, _TASKS[type(request)], self._design, self._file, request.id, *(own or [self._computed]))
+        return await self._task_value(helper, _TASKS[type(request)], self._design, self._file, *own)
 
     async def _respond(self, request: say.Respond, *_: Any) -> None:
         """Change the choice of responses; refused if the stage has none of that name."""
         choice = (request.inputs, request.outputs, request.low, request.high)
-        found = await self._task_value(self._model, "figures", self._design, self._file, self.stored.text, self._computed, choice)
+        found = await self._task_value(self._model, "figures", self._design, self._file, self.stored.text, choice)
         if "response" in found.missing:
             raise refuse("response", found.missing["response"].rstrip("."), "Choose among its inputs and outputs")
         self._choice = choice
-        self._push(found)
+        self._push(replace(found, revision=self._computed))
 
-    async def _derive(self, request: say.Derive, *_: Any) -> say.Said | None:
+    async def _derive(self, *_: Any) -> say.Said | None:
         """Run in a separate process, because of its duration; nothing for an outdated text."""
         self._slow = self._slow or Helper(self._died)
         revision = self._computed
-        return await self._task_value_while(lambda: self._computed == revision, self._slow, "slopes", request.id, revision)
+        return await self._task_value_while(lambda: self._computed == revision, self._slow, "slopes")
 
     async def _travel(self, request: say.Travel, _: int, tell: Tell) -> say.Said:
         """Run in a separate process, which ends with an abort, because of its duration; a new path replaces the running one."""
         self._far = self._far or Helper(self._died)
         self._far.start_anew()
-        return await self._task_value(self._far, "travelled", self._design, self._file, self._computed, request, heard=tell)
+        return await self._task_value(self._far, "travelled", self._design, self._file, request, heard=tell)
 
     async def _halt(self, *_: Any) -> None:
         if self._far is not None:
             self._far.start_anew()
 
-    async def _palette(self, request: say.Palette, *_: Any) -> say.Said:
-        return say.Snippets(request.id, snippets())
+    async def _palette(self, *_: Any) -> say.Said:
+        return say.Snippets(snippets())
 
     async def _look(self, request: say.Look, page: int, _: Tell) -> None:
         self._pages[page] = request.panes
@@ -301,12 +302,12 @@ class Session:
             self._start(self._compute(self._computed, self.sound))
 
     async def _form(self, request: say.JobForm, *_: Any) -> say.Said:
-        return say.Blank(request.id, request.command, await self._task_value(self._quick, "form", request.command))
+        return say.Blank(request.command, await self._task_value(self._quick, "form", request.command))
 
     async def _specify(self, request: say.Specify, *_: Any) -> say.Said:
         path = self._in_folder(request.file) if request.file else self.stored.path
         text = request.text or (Stored.read(path).text if request.file else self._specification)
-        found = await self._task_value(self._quick, "specify", request.id, text, str(path), request.values)
+        found = await self._task_value(self._quick, "specify", text, str(path), request.values)
         self._specification = found.text
         return found
 
@@ -317,7 +318,7 @@ class Session:
         replace(self.stored, path=path).write(request.text, over=True)
 
     async def _run(self, request: say.Run, *_: Any) -> say.Said:
-        return say.Done(request.id, self.history.revision, self.jobs.start(request, self.history.text))
+        return say.Done(self.history.revision, self.jobs.start(request, self.history.text))
 
     async def _cancel(self, request: say.Cancel, *_: Any) -> None:
         self.jobs.cancel(request.job)
@@ -387,8 +388,8 @@ class Session:
         outcome = await self._quick.ask(*call, wanted=lambda: self.history.revision == revision)
         if outcome is None or self.history.revision != revision:
             return
-        self.problems = outcome.problems if outcome.value is None else outcome.value.problems
-        if outcome.value is not None and not self.problems:
+        self.problems = outcome.problems
+        if outcome.value is not None:
             self.reading, self.sound, self._computed = outcome.value, text, revision
         self._push_state()
         if self.problems:
@@ -405,18 +406,18 @@ class Session:
 
     async def _compute_stages(self, revision: int, text: str) -> None:
         for stage, called in _STAGES:
-            work = self._work_of(stage, revision, text)
+            work = self._work_of(stage, text)
             if work is None or self._last.get(stage) == (work, revision):
                 self._report(stage, () if work is None else self._failures.get(stage, ()))
                 continue
             outcome = await self._announced(called, stage, work, lambda: self.sound == text and self._computed == revision)
             if outcome is None:
                 return
-            self._report(stage, outcome.problems if stage != "errors" else outcome.problems or outcome.value)
+            self._report(stage, outcome.problems)
             if not outcome.problems:
                 self._last[stage] = work, revision
-            if outcome.value is not None and stage != "errors":
-                self._push(say.Scene(revision, outcome.value) if stage == "scene" else outcome.value)
+            if outcome.value is not None:
+                self._push(replace(say.Scene(outcome.value) if stage == "scene" else outcome.value, revision=revision))
             if stage == "warnings" and outcome.value and outcome.value.warnings != self._warnings:
                 self._warnings = outcome.value.warnings
                 self._push_state()
@@ -434,18 +435,16 @@ class Session:
         """Errors of the text, else those of its computation, each once."""
         return self.problems or tuple(dict.fromkeys(each for found in self._failures.values() for each in found))
 
-    def _work_of(self, stage: str, revision: int, text: str) -> tuple[Any, ...] | None:
+    def _work_of(self, stage: str, text: str) -> tuple[Any, ...] | None:
         """Task and arguments of a stage; nothing if no page shows its result."""
         if stage == "figures":
-            return stage, text, self._file, self.stored.text, revision, self._choice
-        if stage == "errors":
+            return stage, text, self._file, self.stored.text, self._choice
+        if stage in {"errors", "warnings"}:
             return stage, text, self._file
-        if stage == "warnings":
-            return stage, text, self._file, revision
         if stage == "scene":
             moving = stage not in self._last or self._looks("motions")
             return ("scene" if moving else "still", text, self._file) if self._looks("stage") else None
-        return (stage, text, self._file, self.stored.text, revision) if stage == "verdicts" or self._looks("reach") else None
+        return (stage, text, self._file, self.stored.text) if stage == "verdicts" or self._looks("reach") else None
 
     def _looks(self, pane: str) -> bool:
         """Whether a page shows a pane; before the first page, everything is computed."""
@@ -474,10 +473,10 @@ class Session:
         return outcome
 
     def _push_state(self) -> None:
-        reading, history = self.reading or Reading(()), self.history
+        reading, history = self.reading or Reading(), self.history
         self._push(
             say.State(
-                **{name: each for name, each in vars(reading).items() if name != "problems"},
+                **vars(reading),
                 revision=history.revision,
                 page=history.page,
                 file=os.fsencode(self.stored.path.name).decode(errors="replace"),

@@ -29,14 +29,14 @@ _VERIFIED = 0.01
 """Default accuracy of `verify`."""
 
 
-def solid_modes(text: str, file: str, to: int, revision: int) -> SolidModes:
+def solid_modes(text: str, file: str) -> SolidModes:
     """Return the platform modes by finite elements, each with the paired mode of the lumped model."""
     known = bench(text, file)
     found = fea_modes_from_cache(known.mechanism, Cache())
     if found is None:
-        return SolidModes(to, revision, (), _ABSENT)
+        return SolidModes((), _ABSENT)
     pairs = pair_modes(Moving(found.modes, found.model), Moving(known.modes, known.model))
-    return SolidModes(to, revision, tuple(_modes(text, file, found, pairs)), "")
+    return SolidModes(tuple(_modes(text, file, found, pairs)), "")
 
 
 def _modes(text: str, file: str, found: FeaModes, pairs: dict[int, Pair]) -> Iterator[SolidMode]:

@@ -23,7 +23,7 @@ _FOUND = 0.1
 """Fraction of the work for the equilibria; the remainder is for results at each."""
 
 
-def travelled(text: str, file: str, revision: int, request: Travel, tell: Callable[[Underway], None]) -> Travelled:
+def travelled(text: str, file: str, request: Travel, tell: Callable[[Underway], None]) -> Travelled:
     """Compute a load path of a design for the viewer, relative to the static equilibrium. `tell` receives its progress."""
     mechanism = design(text, file)
     model = nonlinear(mechanism)
@@ -39,7 +39,7 @@ def travelled(text: str, file: str, revision: int, request: Travel, tell: Callab
     told = stroke(found, rest, kinematics=ideal(mechanism) if wanted.drive in model.assembly.strokes else None)
     done(count)
     shown = stroke_data(mechanism, found, told).document()
-    return Travelled(request.id, revision, shown["motions"], problems_of(told.warnings, text, file))
+    return Travelled(shown["motions"], problems_of(told.warnings, text, file))
 
 
 def _stated(mechanism: Mechanism, name: str) -> DrivePath:

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import base64
-import functools
 import json
 import math
 import re
 import types
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from typing import Any, Literal, TypeAlias, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from flexstage.apps.studio.protocol import Floats, Request, Said
 from flexstage.base.finding import refuse
 
 _ADVICE = "Reload the page: its version differs from the version of the server"
-_Kinds: TypeAlias = Mapping[str, type]
 _LARGEST = 2**53 - 1
 """The largest integer that is exact in a page and in this server."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -27,9 +25,16 @@ def encode(message: Said | Request) -> str:
     return json.dumps({"kind": type(message).__name__.lower(), **_plain(message)}, ensure_ascii=False, allow_nan=False)
 
 
-def decode(text: str | bytes, union: Any = Request) -> Any:
-    """Read a message from a text: a request, or another kind of message in `union`. Raises `DesignError` if the text is not a message."""
-    return _read(text, _kinds(union))
+def decode(text: str | bytes, base: type = Request) -> Any:
+    """Read a message from a text: a request, or another subclass of `base`. Raises `DesignError` if the text is not a message."""
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        raise refuse("message", "not valid JSON", _ADVICE) from None
+    kind = _kinds(base).get(str(found.pop("kind", ""))) if isinstance(found, dict) else None
+    if kind is None:
+        raise refuse("message", "unknown kind", _ADVICE)
+    return _record(kind, found, kind.__name__.lower())
 
 
 def floats(values: Any) -> Floats:
@@ -52,29 +57,10 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-@functools.cache
-def _kinds(union: Any) -> _Kinds:
-    return {each.__name__.lower(): each for each in get_args(union)}
-
-
-@functools.cache
-def _hints(kind: type) -> Mapping[str, Any]:
-    return get_type_hints(kind)
-
-
-def _read(text: str | bytes, kinds: _Kinds) -> Any:
-    try:
-        found = json.loads(text)
-    except (ValueError, RecursionError):
-        raise refuse("message", "not valid JSON", _ADVICE) from None
-    return _message(found, kinds)
-
-
-def _message(found: Any, kinds: _Kinds) -> Any:
-    kind = kinds.get(str(found.get("kind"))) if isinstance(found, dict) else None
-    if kind is None:
-        raise refuse("message", "unknown kind", _ADVICE)
-    return _value(kind, {key: item for key, item in found.items() if key != "kind"}, kind.__name__.lower())
+def _kinds(base: type) -> Mapping[str, type]:
+    """The messages of a base class by their kind."""
+    below = base.__subclasses__()
+    return {name: kind for each in below for name, kind in _kinds(each).items()} if below else {base.__name__.lower(): base}
 
 
 def _value(hint: Any, found: Any, where: str) -> Any:
@@ -116,7 +102,7 @@ def _of(kind: type, found: Any, where: str) -> Any:
 
 
 def _record(kind: Any, found: Any, where: str) -> Any:
-    hints = _hints(kind)
+    hints = get_type_hints(kind)
     if not isinstance(found, dict) or found.keys() != hints.keys():
         raise refuse(where, f"fields must be {', '.join(hints)}", _ADVICE)
     return kind(**{name: _value(hint, found[name], f"{where}.{name}") for name, hint in hints.items()})

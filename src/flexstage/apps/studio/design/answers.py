@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from flexstage.apps.studio.protocol import Amount, Channel, Problem
+from flexstage.apps.studio.protocol import Amount, Channel
 
 
 @dataclass(frozen=True)
 class Reading:
-    """Contents of a text: problems, or a design with its numbers, channels and links. `values` are the numbers by address."""
+    """Contents of a text without errors: its numbers, channels and links."""
 
-    problems: tuple[Problem, ...]
     name: str = ""
     amounts: tuple[Amount, ...] = ()
     actuators: tuple[Channel, ...] = ()

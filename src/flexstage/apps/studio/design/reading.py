@@ -44,16 +44,12 @@ def design(text: str, file: str) -> Mechanism:
 
 
 def read(text: str, file: str, stored: str) -> Reading:
-    """Read the contents of a text. The old values of numbers come from the `stored` text."""
-    try:
-        found = design(text, file)
-        requirements(found)
-        require(path_findings(found))
-    except DesignError as error:
-        return Reading(problems_of(error.findings, text, file))
+    """Read the contents of a text; raises `DesignError` with all errors. The old values of numbers come from the `stored` text."""
+    found = design(text, file)
+    requirements(found)
+    require(path_findings(found))
     lines, assembly = line_numbers(text), expand(found)
     return Reading(
-        (),
         found.name,
         tuple(_amounts(found, lines, _stored_values(stored, file))),
         tuple(_actuators(found, assembly)),
