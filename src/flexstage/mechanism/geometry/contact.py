@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import product
 from types import MappingProxyType
 
@@ -24,7 +24,7 @@ from flexstage.mechanism.geometry.near import near_pairs
 from flexstage.mechanism.geometry.outline import Outline, outlines
 from flexstage.mechanism.geometry.pieces import SAGITTA, Form, form_of, is_flat, pieces
 from flexstage.mechanism.mechanism import GROUND, Mechanism
-from flexstage.parts.body import Imported, Solid, SolidWithHoles, within_polygon
+from flexstage.parts.body import Imported, PlacedSolid, Solid, SolidWithHoles, within_polygon
 from flexstage.parts.section import Section
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.convex import Convex, distance, polytope_corners, separation
@@ -48,18 +48,6 @@ _MARGIN = (5e-5, 0.05)
 
 
 @dataclass(frozen=True, eq=False)
-class _Hole:
-    """A hole; `frame` is at its centre."""
-
-    solid: Solid
-    frame: Frame
-
-    def contains(self, points: Array) -> Array:
-        """Mask of points (n, 3) in the hole, within the tolerance of round faces."""
-        return self.solid.contains((points - self.frame.position) @ self.frame.rotation, SAGITTA)
-
-
-@dataclass(frozen=True, eq=False)
 class _Thing:
     """A body's solid or a link's part in the stage; `bodies` are its own, or joined."""
 
@@ -75,10 +63,10 @@ class _Thing:
         return tuple(piece.within(self.frame) for piece in pieces(self.form))
 
     @cached_property
-    def holes(self) -> tuple[_Hole, ...]:
+    def holes(self) -> tuple[PlacedSolid, ...]:
         """Holes of the body in this solid."""
         own = self.form.holes if isinstance(self.form, SolidWithHoles) else ()
-        return tuple(_Hole(hole, _first(hole.frame).within(self.frame)) for hole in own)
+        return tuple(PlacedSolid(hole, _first(hole.frame).within(self.frame)) for hole in own)
 
     def trim(self, margin: float) -> tuple[Convex, ...]:
         return tuple(piece.within(self.frame) for piece in pieces(self.form, margin))
@@ -187,12 +175,18 @@ def _unconnected(mechanism: Mechanism, within: float, moved: Mapping[str, Array]
     """Pairs of unconnected outlines whose boxes are within a distance."""
     assembly = expand(with_drawn_parts(mechanism))
     things = {name: _displaced(thing, moved, assembly) if moved else thing for name, thing in _things(assembly).items()}
-    seen = [thing for thing in things.values() if not isinstance(thing.form, Imported)]
+    yield from ((first, second) for first, second, meets in _strangers(things.values(), within) if not meets)
+
+
+def _strangers(things: Iterable[_Thing], within: float) -> Iterator[tuple[_Thing, _Thing, bool]]:
+    """Pairs of outlines of different bodies near one another, and whether they are links that may meet in a body without outlines."""
+    seen = [thing for thing in things if not isinstance(thing.form, Imported)]
     drawn_bodies = {thing.bodies[0] for thing in seen if not thing.is_link}
     for one, other in near_pairs([thing.outline for thing in seen], within):
         first, second = seen[one], seen[other]
-        if not _belong(first, second) and not _meet_in_a_point(first, second, drawn_bodies):
-            yield first, second
+        common = {*first.bodies} & {*second.bodies}
+        if not common or (first.is_link and second.is_link):
+            yield first, second, bool(common - drawn_bodies)
 
 
 def _apart(first: _Thing, second: _Thing, most: float) -> float:
@@ -324,9 +318,8 @@ def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
     return _Meeting(float(weights @ beyond), depth)
 
 
-@lru_cache(maxsize=64)
 def _face(y: float, z: float, *, is_round: bool) -> tuple[Array, Array]:
-    """Points on a rectangle or circle by its half sides, with shares of the area; cached."""
+    """Points on a rectangle or circle by its half sides, with shares of the area."""
     if is_round:
         radii = np.array([0.9995, 0.9, 0.7, 0.5, 0.3, 0.1])
         shares = np.array([0.0, 0.36, 0.28, 0.2, 0.12, 0.04])
@@ -352,7 +345,7 @@ def _rim(link: _Thing, side: float) -> Array:
 
 
 def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
-    """Mask of points (n, 3) in a solid, or within `slack` [m] of it."""
+    """Mask of points (n, 3) in a solid or the box of a link, or within `slack` [m] of it."""
     own = (points - thing.frame.position) @ thing.frame.rotation
     if isinstance(thing.form, Solid):
         return thing.form.contains(own, slack)
@@ -361,7 +354,6 @@ def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
 
 def _depth(met: Sequence[_Thing], face: Array, inward: Array, most: float) -> float:
     """Distance [m] along the link from points of an end face to the outside of all outlines, by bisection."""
-    low, high = 0.0, most
     steps = np.linspace(0.0, most, 33)
     deep = [step for step in steps if any(np.any(_inside(each, face + step * inward, 0.0)) for each in met)]
     low = max(deep, default=0.0)
@@ -460,33 +452,16 @@ def _gap(first: _Thing, second: _Thing, most: float = np.inf) -> float:
 
 
 def _clash_findings(things: Mapping[str, _Thing]) -> Iterator[Finding]:
-    seen = [thing for thing in things.values() if not isinstance(thing.form, Imported)]
-    drawn_bodies = {thing.bodies[0] for thing in seen if not thing.is_link}
-    for one, other in near_pairs([thing.outline for thing in seen], TOUCHING):
-        first, second = seen[one], seen[other]
-        if _belong(first, second):
-            continue
+    for first, second, meets in _strangers(things.values(), TOUCHING):
         deep, around = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])
         if deep > TOUCHING:
             place = ", ".join(f"{round(1e3 * float(value), 2) + 0.0:g}" for value in around)
             yield Finding(first.name, f"it overlaps {second.name} by {_text(deep)} around ({place}) mm", _advice(first, second))
-        elif deep >= -TOUCHING and not _meet_in_a_point(first, second, drawn_bodies):
+        elif deep >= -TOUCHING and not meets:
             yield Finding(first.name, f"it touches {second.name} without a joint", _advice(first, second))
 
 
-def _belong(first: _Thing, second: _Thing) -> bool:
-    """Whether two belong to one body, or are a link and a joined body."""
-    return (first.is_link != second.is_link and bool(set(first.bodies) & set(second.bodies))) or (
-        not first.is_link and not second.is_link and first.bodies == second.bodies
-    )
-
-
-def _meet_in_a_point(first: _Thing, second: _Thing, drawn_bodies: set[str]) -> bool:
-    """Whether two links join a body without outlines, possibly between them."""
-    return first.is_link and second.is_link and bool((set(first.bodies) & set(second.bodies)) - drawn_bodies)
-
-
-def _overlap(first: Sequence[Convex], second: Sequence[Convex], holes: Sequence[_Hole] = ()) -> tuple[float, Array]:
+def _overlap(first: Sequence[Convex], second: Sequence[Convex], holes: Sequence[PlacedSolid] = ()) -> tuple[float, Array]:
     """Depth of overlap of two sets of pieces [m] (negative: least distance), and its centre.
 
     A common volume within one of the `holes` is not an overlap.
@@ -502,7 +477,7 @@ def _overlap(first: Sequence[Convex], second: Sequence[Convex], holes: Sequence[
     return deepest, around
 
 
-def _is_hollow(one: Convex, other: Convex, holes: Sequence[_Hole]) -> bool:
+def _is_hollow(one: Convex, other: Convex, holes: Sequence[PlacedSolid]) -> bool:
     """Whether the common volume of two pieces, enlarged by twice the contact tolerance, is within a hole."""
     sides, offsets = [], []
     for piece in (one, other):
@@ -510,7 +485,8 @@ def _is_hollow(one: Convex, other: Convex, holes: Sequence[_Hole]) -> bool:
             sides.append(normals)
             offsets.append(np.max(piece.points @ normals.T, axis=0) + 2.0 * TOUCHING)
     corners = polytope_corners(np.concatenate(sides), np.concatenate(offsets))
-    return len(corners) > 0 and any(np.all(hole.contains(corners)) for hole in holes)
+    inside = (hole.solid.contains((corners - hole.frame.position) @ hole.frame.rotation, SAGITTA) for hole in holes)
+    return len(corners) > 0 and any(map(np.all, inside))
 
 
 def _close(first: Sequence[Convex], second: Sequence[Convex]) -> Iterator[tuple[Convex, Convex]]:
@@ -540,23 +516,9 @@ def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> I
         frame = _first(seen.frame)
         points = np.concatenate([piece.points for thing in things for piece in thing.pieces])
         side = float(np.max(np.ptp(points, axis=0)))
-        if any(np.any(_inside(thing, frame.position[None])) for thing in things):
-            continue
-        if any(_is_within(_BRACKET * side, frame.position, piece) for thing in things for piece in thing.pieces):
-            continue
         beside = min(distance(frame.position[None], piece.points) for thing in things for piece in thing.pieces)
         if beside > _BRACKET * side:
             yield _off_target(name, seen.body, beside, _miss(frame, things, beside + 2.0 * side))
-
-
-def _is_within(reach: float, point: Array, piece: Convex) -> bool:
-    """Fast test: whether the nearest face of a piece contains the foot of the perpendicular within a distance."""
-    across, heights = piece.points @ piece.normals.T, piece.normals @ point
-    low, high = across.min(axis=0), across.max(axis=0)
-    beyond = heights - np.clip(heights, low, high)
-    face = int(np.argmax(np.abs(beyond)))
-    foot = piece.normals @ (point - beyond[face] * piece.normals[face])
-    return bool(abs(beyond[face]) <= reach and np.all((foot >= low - TOUCHING) & (foot <= high + TOUCHING)))
 
 
 def _miss(frame: Frame, things: Sequence[_Thing], reach: float) -> float:
