@@ -105,9 +105,9 @@ def test_a_damaged_piece_is_named(tmp_path, flexstage):
     (tmp_path / "study.toml").write_text(STUDY)
     folder = folder_of(tmp_path / "r.h5")
     folder.mkdir()
-    (folder / "000000000256.npz").write_bytes(b"none")
+    (folder / "000000000256.piece").write_bytes(b"none")
     done = flexstage("sweep", "study.toml", "-o", "r.h5", "--resume")
-    assert (done.code, "000000000256.npz: not a piece" in done.err) == (2, True), done.err
+    assert (done.code, "000000000256.piece: not a piece" in done.err) == (2, True), done.err
 
 
 def test_what_made_results_is_kept(whole, tmp_path):

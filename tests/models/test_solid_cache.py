@@ -17,14 +17,14 @@ import pytest
 import flexstage as fs
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.processes.progress import Step
+from flexstage.base.storage.record_store import to_bytes
 from flexstage.base.units.scale import mm
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.solid.fea.jobs import parts as parts_module
-from flexstage.solid.fea.jobs.cache import Cache, find, folder_of, keep, key_of
+from flexstage.solid.fea.jobs.cache import Cache, find, folder_of, keep, key_of, program
 from flexstage.solid.fea.jobs.parts import Ways, reduce_parts
 from flexstage.solid.fea.jobs.remote import Limits
-from flexstage.solid.fea.jobs.store import program, to_bytes
 from flexstage.solid.fea.solver.component import components
 from flexstage.solid.results.read import model as solid
 from flexstage.solid.results.read import read_solid, solids
@@ -93,8 +93,7 @@ def test_a_damaged_file_is_told_and_replaced(tmp_path: Path) -> None:
 def test_other_versions_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cache = Cache(tmp_path)
     keep(cache, "key", "lever", ELEMENT)
-    for module in ("cache", "store"):
-        monkeypatch.setattr(f"flexstage.solid.fea.jobs.{module}.program", lambda: "flexstage 99.0")
+    monkeypatch.setattr("flexstage.solid.fea.jobs.cache.program", lambda: "flexstage 99.0")
     assert find(cache, "key", "lever") is None
     keep(cache, "key", "lever", ELEMENT)
     assert find(cache, "key", "lever") is not None
@@ -125,7 +124,7 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(tmp_path: Path, monkeyp
 
 @pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="mounts a small disk, which only root may")
 def test_a_small_disk_that_is_full_is_told_and_nothing_is_half_written(tmp_path: Path) -> None:
-    size = len(to_bytes(ELEMENT, "a"))
+    size = len(to_bytes(ELEMENT, "a", program()))
     command = ["mount", "-t", "tmpfs", "-o", f"size={max(4096, size // 8192 * 4096)}", "tmpfs", str(tmp_path)]
     if subprocess.run(command, capture_output=True, check=False).returncode:
         pytest.skip("this root may not mount")
@@ -154,7 +153,7 @@ def test_an_interruption_while_writing_leaves_the_old_file(tmp_path: Path, monke
 
 
 def test_the_least_recently_used_go_first(tmp_path: Path) -> None:
-    size = len(to_bytes(ELEMENT, "a"))
+    size = len(to_bytes(ELEMENT, "a", program()))
     cache = Cache(tmp_path, limit=2.5 * size)
     for age, key in ((300.0, "a"), (200.0, "b")):
         keep(cache, key, key, ELEMENT)

@@ -22,13 +22,13 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.processes import pool as processes
 from flexstage.base.processes.jobs import Worker
 from flexstage.base.processes.progress import Step
+from flexstage.base.storage.record_store import to_bytes
 from flexstage.base.units.scale import mm
 from flexstage.solid.fea.geometry.cad import cad
 from flexstage.solid.fea.jobs.memory import Counts, entries, freedoms, needed
 from flexstage.solid.fea.jobs.progress import Stage
 from flexstage.solid.fea.jobs.reducing import Reduce, fewest_elements
 from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all
-from flexstage.solid.fea.jobs.store import to_bytes
 from flexstage.solid.fea.solver.superelement import Superelement
 from flexstage.spatial.frame import Frame
 from tests.models.small_solids import COARSE, Bomb, job, mined, rod

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
@@ -18,7 +17,7 @@ from flexstage.base.processes.jobs import Line, cores
 from flexstage.base.processes.pool import results
 from flexstage.base.record import INNER
 from flexstage.base.storage.digest import digest
-from flexstage.base.storage.store import write
+from flexstage.base.storage.record_store import RecordStore
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.optimisation.result import Binding
@@ -105,7 +104,8 @@ def design(  # noqa: PLR0913 (its options)
     ]
     screened = [(pair, list(shortfalls(specification, pair))) for pair in pairs]
     open_pairs = sorted((pair for pair, faults in screened if not faults), key=lambda pair: (demand(specification, pair), pair.name))
-    store = _Store(specification, keep, resume=how.resume, finished=finished)
+    kept = None if keep is None else RecordStore(keep, ".answer", (Answer, FailedPair, FrontPoint, Binding, Relaxation))
+    store = _Store(specification, kept, resume=how.resume, finished=finished)
     found, interrupted = dict[str, Answer | FailedPair](), False
     try:
         for pair, result in _searched(store, open_pairs, progress, cores() if how.workers is None else how.workers):
@@ -136,49 +136,42 @@ def _violation(failed: FailedPair) -> tuple[float, str, str]:
 
 @dataclass(frozen=True)
 class _Store:
-    """Results of pairs in a folder, by the content that they depend on; none without a folder."""
+    """Results of pairs in `files`, if any, by the content that they depend on."""
 
     specification: Specification
-    folder: Path | None
+    files: RecordStore | None
     resume: bool
     finished: Callable[[Answer | FailedPair], None] | None
 
-    def path(self, pair: CandidatePair, what: str) -> Path | None:
-        """File of a result; `None` if it is not kept: without a folder, or if the pair cannot be drawn."""
-        if self.folder is None:
-            return None
+    def key(self, pair: CandidatePair, what: str) -> str:
+        """Key of a result; empty if the pair cannot be drawn."""
         try:
             drawn = draw(pair.architecture, self.specification, pair.actuator)
             study = study_text(pair.architecture, self.specification, pair.actuator, specified_goals(pair.architecture, self.specification))
         except DesignError:
-            return None
-        return self.folder / f"{digest((__version__, what, pair.name, repr(self.specification), drawn, study))[:20]}.json"
+            return ""
+        return digest((__version__, what, pair.name, repr(self.specification), drawn, study))[:20]
 
     def kept(self, pair: CandidatePair, what: str) -> Answer | FailedPair | None:
-        """An earlier result."""
-        path = self.path(pair, what) if self.resume else None
-        return None if path is None or not path.exists() else self._announced(_from_text(path.read_text(encoding="utf-8")))
+        """An earlier result; `None` if there is none, or if its file is damaged."""
+        if self.files is None or not self.resume:
+            return None
+        try:
+            result = self.files.find(self.key(pair, what))
+        except (FileNotFoundError, ValueError):
+            return None
+        return self._announced(result)
 
     def put(self, pair: CandidatePair, what: str, result: Answer | FailedPair) -> Answer | FailedPair:
         """Keep a result, and return it."""
-        if (path := self.path(pair, what)) is not None:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write(path, json.dumps({"kind": type(result).__name__, **dataclasses.asdict(result)}))
+        if self.files is not None and (key := self.key(pair, what)):
+            self.files.keep(key, result)
         return self._announced(result)
 
     def _announced(self, result: Answer | FailedPair) -> Answer | FailedPair:
         if self.finished is not None:
             self.finished(result)
         return result
-
-
-def _from_text(text: str) -> Answer | FailedPair:
-    """A result from its file."""
-    tree: dict[str, Any] = json.loads(text)
-    if tree.pop("kind") == Answer.__name__:
-        points, binding = tuple(FrontPoint(**each) for each in tree["front"]), tuple(Binding(**each) for each in tree["binding"])
-        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]), front=points, binding=binding)
-    return replace(FailedPair(**tree), relaxed=tuple(Relaxation(**each) for each in tree["relaxed"]))
 
 
 def _searched(

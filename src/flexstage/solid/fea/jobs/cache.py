@@ -6,6 +6,7 @@ Files that cannot be read or written cause warnings, not errors: the result is t
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import os
 import warnings
@@ -19,11 +20,15 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
-from flexstage.base.storage.store import FOLDER_VARIABLE, cache_folder, write
+from flexstage.base.storage.record_store import FORMAT, RecordStore, to_bytes
+from flexstage.base.storage.store import FOLDER_VARIABLE, cache_folder
+from flexstage.base.version import __version__
+from flexstage.solid.fea.hinges.hinge_form import HingeSolid
 from flexstage.solid.fea.jobs.content import content
-from flexstage.solid.fea.jobs.store import from_bytes, program, to_bytes
+from flexstage.solid.fea.jobs.install import SOLVER_VERSION
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.fea.solver.component import Component
+from flexstage.solid.fea.solver.superelement import Skin, Superelement
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,21 @@ class Cache(CheckedFields):
 
     folder: Path | None = None
     limit: float = 4e9
+
+
+@functools.cache
+def program() -> str:
+    """Return the identity of the program: flexstage with a digest of its solid model's code, NGSolve, and the file format.
+
+    Stored results of another program identity are therefore never used.
+
+    >>> program().endswith(f"with NGSolve {SOLVER_VERSION}, format {FORMAT}")
+    True
+    """
+    state = hashlib.sha256()
+    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
+        state.update(path.name.encode() + path.read_bytes())
+    return f"flexstage {__version__} ({state.hexdigest()[:16]}) with NGSolve {SOLVER_VERSION}, format {FORMAT}"
 
 
 Notice: TypeAlias = Callable[[Finding], None]
@@ -89,19 +109,18 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, noti
     >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True
     """
-    path = _path(cache, key, kind)
+    store = _store(cache, kind)
     try:
-        outcome = from_bytes(path.read_bytes(), key)
+        result = store.find(key)
     except FileNotFoundError:
         return None
-    except OSError as error:
-        outcome = f"it cannot be read ({error.strerror})"
-    if isinstance(outcome, str):
-        notice(Finding(where, f"its {kind.noun} {path} is not used: {outcome}", "It is computed again and replaced"))
+    except (OSError, ValueError) as error:
+        why = f"it cannot be read ({error.strerror})" if isinstance(error, OSError) else error
+        notice(Finding(where, f"its {kind.noun} {store.path(key)} is not used: {why}", "It is computed again and replaced"))
         return None
     with contextlib.suppress(OSError):
-        os.utime(path)
-    return outcome
+        os.utime(store.path(key))
+    return result
 
 
 def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
@@ -110,7 +129,7 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
     >>> holds(Cache(Path("/nowhere")), "key")
     False
     """
-    return _path(cache, key, kind).is_file()
+    return _store(cache, kind).path(key).is_file()
 
 
 def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
@@ -119,14 +138,13 @@ def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELE
     >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", None, notice=lambda finding: print(finding.where))
     lever
     """
-    path, data = _path(cache, key, kind), to_bytes(element, key)
+    store, data = _store(cache, kind), to_bytes(element, key, program())
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        _remove_old(cache, path.parent, len(data), kind)
-        write(path, data)
+        _remove_old(cache, store.folder, len(data), kind)
+        store.write(key, data)
     except (OSError, DesignError) as error:
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
-        what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be stored in {path.parent} ({why})"
+        what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be stored in {store.folder} ({why})"
         advice = f"The result is complete, but not cached: free space in this folder, or set {FOLDER_VARIABLE} to another folder"
         notice(Finding(where, what, advice))
 
@@ -148,5 +166,6 @@ def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
             yield state.st_mtime, state.st_size, path
 
 
-def _path(cache: Cache, key: str, kind: Kind) -> Path:
-    return folder_of(cache) / f"{key}-{hashlib.sha256(program().encode()).hexdigest()[:12]}{kind.suffix}"
+def _store(cache: Cache, kind: Kind) -> RecordStore:
+    ending = f"-{hashlib.sha256(program().encode()).hexdigest()[:12]}{kind.suffix}"
+    return RecordStore(folder_of(cache), ending, (Superelement, Skin, HingeSolid, Finding), program())

@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute, Hdf, hdf, new_hdf
+from flexstage.base.storage.record_store import RecordStore
 from flexstage.base.storage.store import atomic_write
 from flexstage.base.version import __version__
 from flexstage.studies.sweeps.definition import Study
@@ -28,7 +28,7 @@ from flexstage.studies.sweeps.execution.evaluate import Piece
 
 FORMAT = "flexstage results 1"
 _ATTEMPTS = 20
-_PIECES = ".pieces"
+_PIECES, _PIECE = ".pieces", ".piece"
 _FRAME, _ENTRY = 100_000, 64
 """Size [B] of a results file without numbers, and of the entry of a failure without its reason."""
 
@@ -110,21 +110,16 @@ def folder_of(path: Path) -> Path:
 
 
 def write_piece(folder: Path, found: Piece) -> Path:
-    """Write a piece, with the designs from number `start`, into the folder as `<start>.npz`.
+    """Write a piece, with the designs from number `start`, into the folder as `<start>.piece`.
 
     Raises `DesignError` if the file cannot be written.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as place:
     ...     write_piece(Path(place), Piece(256, np.ones((2, 1)), np.ones((2, 3)), {})).name
-    '000000000256.npz'
+    '000000000256.piece'
     """
-    target = folder / f"{found.start:012d}.npz"
-    rows = np.array(sorted(found.failures), dtype=np.int64)
-    reasons = np.array([found.failures[row] for row in sorted(found.failures)], dtype=np.str_)
-    with atomic_write(target) as place, place.open("xb") as stream:
-        np.savez(stream, variables=found.variables, responses=found.responses, rows=rows, reasons=reasons, made=np.array(found.made))
-    return target
+    return _pieces_in(folder).keep(f"{found.start:012d}", found)
 
 
 def read_piece(path: Path) -> Piece:
@@ -137,13 +132,15 @@ def read_piece(path: Path) -> Piece:
     (256, (2, 3), {1: 'too thin'})
     """
     try:
-        with np.load(path) as stored:
-            failures = dict(zip(stored["rows"].tolist(), stored["reasons"].tolist(), strict=True))
-            return Piece(int(path.stem), stored["variables"], stored["responses"], failures, str(stored["made"]))
+        return _pieces_in(path.parent).find(path.stem)
     except FileNotFoundError:
         raise
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+    except (OSError, ValueError):
         raise refuse(os.fspath(path), "not a piece of results, or damaged", "Remove the file and resume") from None
+
+
+def _pieces_in(folder: Path) -> RecordStore:
+    return RecordStore(folder, _PIECE, (Piece,))
 
 
 def pending_pieces(path: Path) -> dict[int, Path]:
@@ -153,7 +150,7 @@ def pending_pieces(path: Path) -> dict[int, Path]:
     {}
     """
     folder = folder_of(path)
-    return {int(each.stem): each for each in sorted(folder.glob("[0-9]*.npz"))} if folder.is_dir() else {}
+    return {int(each.stem): each for each in sorted(folder.glob(f"[0-9]*{_PIECE}"))} if folder.is_dir() else {}
 
 
 def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], tuple[tuple[str, ...], tuple[str, ...]]]:
