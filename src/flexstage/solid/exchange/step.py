@@ -17,7 +17,7 @@ from flexstage.base.storage.store import temporary_folder
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.exchange.paint import Colour, palette
-from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.draw import unite
 from flexstage.solid.fea.geometry.piece import Piece
 from flexstage.solid.fea.geometry.stage_pieces import Stage, require_shapes, stage_pieces
 
@@ -108,7 +108,7 @@ def stage_parts(stage: Stage) -> tuple[Part, ...]:
         groups.setdefault((owner, stage.materials[piece.name]), []).append(piece)
     owners = [owner for owner, _ in groups]
     return tuple(
-        Part(owner if owners.count(owner) == 1 else f"{owner}/{material}", _fuse(pieces), material, pieces[0].medium.density)
+        Part(owner if owners.count(owner) == 1 else f"{owner}/{material}", unite(pieces), material, pieces[0].medium.density)
         for (owner, material), pieces in groups.items()
     )
 
@@ -125,11 +125,6 @@ def step(mechanism: Mechanism) -> bytes:
     stage = stage_pieces(mechanism)
     require_shapes(mechanism, stage)
     return step_text(mechanism.name or "stage", stage_parts(stage)).encode("ascii")
-
-
-def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
-    shapes = [move_solid(draw_form(piece.form), piece.frame) for piece in pieces]
-    return shapes[0] if len(shapes) == 1 else occ.Fuse(shapes)
 
 
 def step_text(name: str, parts: Sequence[Part]) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 from netgen import occ
@@ -13,12 +15,12 @@ from flexstage.base.number import Array
 from flexstage.base.session import SESSION
 from flexstage.parts.body import Cylinder, Imported, SolidWithHoles, Sphere
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.draw import draw_form, draw_piece
 from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors, cut_at_mirrors, is_symmetric
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, coordinates, is_mirrored
 from flexstage.solid.fea.jobs.content import KEPT
 from flexstage.solid.fea.meshing.fineness import is_thin
-from flexstage.solid.fea.solver.component import Component, Interface, Joint, groups
+from flexstage.solid.fea.solver.component import Component, Joint, groups
 
 _TOLERANCE = 1e-3
 """Faces match within this distance [mm]."""
@@ -56,12 +58,12 @@ def cad(component: Component) -> Cad:
     (10000.0, ('end', 'foot'))
     """
     media = tuple(dict.fromkeys(piece.medium for piece in component.pieces))
-    solids = [_fuse([piece for piece in component.pieces if piece.medium == medium]) for medium in media]
+    solids = [reduce(operator.add, [draw_piece(piece) for piece in component.pieces if piece.medium == medium]) for medium in media]
     for number, solid in enumerate(solids):
         solid.mat(f"medium {number}")
     shape = solids[0] if len(solids) == 1 else occ.Glue(solids)
     require(_pieces_of(component, shape))
-    shape = _name_solids(shape, component.interfaces)
+    shape = _name_solids(shape, footprints(component))
     joints = [*(item.joint for item in component.interfaces), *component.fixed]
     require(finding for joint in joints if (finding := _name_face(shape, joint)) is not None)
     return Cad(shape, media, tuple(joint.name for joint in joints))
@@ -127,17 +129,19 @@ def _is_round(form: Form) -> bool:
 def _solids(component: Component) -> Iterator[list[occ.TopoDS_Shape]]:
     """The solids of each link, of each body, and those that imprint each foreign joint."""
     for members in groups(component).values():
-        yield [move_solid(draw_form(piece.form), piece.frame) for piece in (component.pieces[number] for number in members)]
-    for item in component.interfaces:
-        if item.footprint is not None and item.stamp is not None:
-            yield [move_solid(draw_form(item.footprint), item.stamp)]
+        yield [draw_piece(component.pieces[number]) for number in members]
+    for piece in footprints(component):
+        yield [draw_piece(piece)]
 
 
-def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
-    total = move_solid(draw_form(pieces[0].form), pieces[0].frame)
-    for piece in pieces[1:]:
-        total = total + move_solid(draw_form(piece.form), piece.frame)
-    return total
+def footprints(component: Component) -> tuple[Piece, ...]:
+    """Return the links of other components whose end faces are imprinted on a component.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> footprints(bar())
+    ()
+    """
+    return tuple(item.footprint for item in component.interfaces if item.footprint is not None)
 
 
 def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
@@ -154,11 +158,9 @@ def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Findin
         yield Finding(component.name, f"its pieces ({names}) form {len(groups)} separate solids", "Make their outlines touch")
 
 
-def _name_solids(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:
+def _name_solids(shape: occ.TopoDS_Shape, foreign: Sequence[Piece]) -> occ.TopoDS_Shape:
     """The shape with the end faces of foreign links imprinted on it."""
-    stamps = [
-        move_solid(draw_form(item.footprint), item.stamp) for item in interfaces if item.footprint is not None and item.stamp is not None
-    ]
+    stamps = [draw_piece(piece) for piece in foreign]
     if not stamps:
         return shape
     for stamp in stamps:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from flexstage.mechanism.geometry.near import near_pairs
 from flexstage.mechanism.mechanism import GROUND
-from flexstage.solid.fea.geometry.draw import draw_form, move_solid
-from flexstage.solid.fea.geometry.near import Answer, Question, distance_text, frame_key, relative_frame
+from flexstage.solid.fea.geometry.draw import draw_form, draw_piece
+from flexstage.solid.fea.geometry.near import Answer, Question, distance_text, piece_key
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, coordinates, form_digest
 from flexstage.solid.fea.geometry.stage_pieces import Stage
 
@@ -33,8 +33,7 @@ def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
         first, second = pieces[one], pieces[other]
         if _belong_together(stage, first, second):
             continue
-        relative = relative_frame(second.frame, first.frame)
-        key = f"pair {form_digest(first.form)} {form_digest(second.form)} {frame_key(relative)}"
+        key = f"pair {form_digest(first.form)} {piece_key(second.within(first.frame))}"
         yield Question(key, first.name, lambda pair=(first, second), clearance=clearance: _answers(*pair, clearance))
 
 
@@ -49,7 +48,7 @@ def _belong_together(stage: Stage, first: Piece, second: Piece) -> bool:
 
 
 def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
-    here, there = draw_form(first.form), move_solid(draw_form(second.form), relative_frame(second.frame, first.frame))
+    here, there = draw_form(first.form), draw_piece(second.within(first.frame))
     away, common = float(here.Distance(there)), here * there  # a solid inside another one has a distance to its faces
     if common.mass > _NO_VOLUME:
         at = first.frame.point(coordinates(common.center) / MILLIMETRES) * MILLIMETRES

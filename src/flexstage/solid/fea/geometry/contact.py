@@ -14,14 +14,13 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.geometry.near import near_pairs
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.solid.fea.geometry.clearance import clearance_questions
-from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.draw import draw_form, draw_piece, unite
 from flexstage.solid.fea.geometry.imported import import_findings
-from flexstage.solid.fea.geometry.near import Answer, Question, distance_text, findings_of, frame_key, relative_frame
+from flexstage.solid.fea.geometry.near import Answer, Question, distance_text, findings_of, piece_key
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, form_digest, span, thinnest
 from flexstage.solid.fea.geometry.sliver import SLIVER, sliver_findings
 from flexstage.solid.fea.geometry.stage_pieces import Stage, stage_pieces
 from flexstage.solid.fea.solver.component import components
-from flexstage.spatial.frame import Frame, identity
 
 _DEPTH = 0.01
 """Depth [mm] to which an end face is extruded for the contact test."""
@@ -59,7 +58,7 @@ def _joint_questions(stage: Stage) -> Iterator[Question]:
         ends = tuple(_end(stage, name, number) for number in (0, 1))
         piece = stage.pieces[name]
         yield Question(
-            f"joint {form_digest(piece.form)} {ends[0].key} {ends[1].key}",
+            f"joint {form_digest(piece.form)} {' '.join(piece_key(each) for end in ends for each in end.pieces)}",
             name,
             lambda piece=piece, ends=ends: _link_answers(piece, ends[0], ends[1]),
         )
@@ -72,10 +71,6 @@ class _End:
     side: float
     body: str
     pieces: tuple[Piece, ...]
-
-    @property
-    def key(self) -> str:
-        return " ".join(f"{form_digest(piece.form)} {frame_key(piece.frame)}" for piece in self.pieces)
 
 
 @dataclass(frozen=True)
@@ -96,8 +91,7 @@ def _end(stage: Stage, link: str, number: int) -> _End:
     pieces = [each for each in stage.bodies.get(joint.body, ()) if joint.body != GROUND or _group(each.name) == _group(link)]
     boxes = [stage.boxes[link], *(stage.boxes[each.name] for each in pieces)]
     near = [pieces[other - 1] for one, other in near_pairs(boxes, _NEAR) if one == 0]
-    chosen = [Piece(each.name, each.form, each.medium, relative_frame(each.frame, piece.frame), joint.body) for each in near or pieces]
-    return _End(1.0 if number else -1.0, joint.body, tuple(chosen))
+    return _End(1.0 if number else -1.0, joint.body, tuple(each.within(piece.frame) for each in near or pieces))
 
 
 def _group(name: str) -> str:
@@ -107,7 +101,7 @@ def _group(name: str) -> str:
 def _link_answers(piece: Piece, first: _End, second: _End) -> Iterator[Answer]:
     shape, half = draw_form(piece.form), 0.5 * span(piece.form) * MILLIMETRES
     drawn_ends = [end for end in (first, second) if end.pieces]
-    solids = {end.side: _unite(end.pieces, identity()) for end in drawn_ends}
+    solids = {end.side: unite(end.pieces) for end in drawn_ends}
     meetings = {end.side: _meeting(shape, half, end.side, solids[end.side]) for end in drawn_ends}
     bad = [end for end in drawn_ends if not meetings[end.side].sound]
     if bad and all(_meeting(shape, half, -end.side, solids[end.side]).sound for end in drawn_ends):
@@ -170,16 +164,14 @@ def _side_answers(shape: occ.TopoDS_Shape, half: float, end: _End, solid: occ.To
 def _body_questions(stage: Stage) -> Iterator[Question]:
     for body, pieces in stage.bodies.items():
         if body != GROUND and len(pieces) > 1:
-            base = pieces[0].frame
-            seen = [Piece(piece.name, piece.form, piece.medium, relative_frame(piece.frame, base), body) for piece in pieces]
-            key = " ".join(f"{form_digest(piece.form)} {frame_key(piece.frame)}" for piece in seen)
+            seen = [piece.within(pieces[0].frame) for piece in pieces]
             slot = SLIVER * max(thinnest(piece.form) for piece in pieces)
             near = near_pairs([stage.boxes[piece.name] for piece in pieces], slot)
-            yield Question(f"body {key}", body, lambda seen=seen, near=near: _body_answers(seen, near))
+            yield Question(f"body {' '.join(map(piece_key, seen))}", body, lambda seen=seen, near=near: _body_answers(seen, near))
 
 
 def _body_answers(pieces: Sequence[Piece], near: Sequence[tuple[int, int]]) -> Iterator[Answer]:
-    shapes = [move_solid(draw_form(piece.form), piece.frame) for piece in pieces]
+    shapes = [draw_piece(piece) for piece in pieces]
     if len(occ.Fuse(shapes).solids) == 1:
         yield from _slot_answers(pieces, shapes, near)
     else:
@@ -218,8 +210,3 @@ def _connected_groups(shapes: Sequence[occ.TopoDS_Shape]) -> list[list[int]]:
         groups = [group for group in groups if group not in joined]
         groups.append(sorted([number, *(member for group in joined for member in group)]))
     return sorted(groups, key=lambda group: (-len(group), group))
-
-
-def _unite(pieces: Sequence[Piece], base: Frame) -> occ.TopoDS_Shape:
-    shapes = [move_solid(draw_form(piece.form), relative_frame(piece.frame, base)) for piece in pieces]
-    return shapes[0] if len(shapes) == 1 else occ.Fuse(shapes)

@@ -6,7 +6,7 @@ tangent to an end face are shortened by 3 % of their radius: two tangent faces f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -30,7 +30,7 @@ from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.contour import contour_edges, segments
 from flexstage.solid.fea.geometry.imported import imported_shape
-from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, millimetres
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Piece, millimetres
 from flexstage.solid.fea.geometry.reinforced_leaf import reinforced_solid
 from flexstage.solid.fea.hinges.specimen import Specimen, bar, cut
 from flexstage.spatial.frame import Frame
@@ -89,6 +89,22 @@ def move_solid(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
         axis = occ.Axis(occ.Pnt(0, 0, 0), occ.Dir(*(turn / angle)))
         solid = solid.Rotate(axis, float(np.rad2deg(angle)))
     return solid.Move(occ.Vec(*_point(frame.position)))
+
+
+def draw_piece(piece: Piece) -> occ.TopoDS_Shape:
+    """Draw a piece in its frame [mm].
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> round(draw_piece(bar().pieces[0]).center.x, 6)
+    50.0
+    """
+    return move_solid(draw_form(piece.form), piece.frame)
+
+
+def unite(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
+    """Draw several pieces as one shape [mm]."""
+    shapes = [draw_piece(piece) for piece in pieces]
+    return shapes[0] if len(shapes) == 1 else occ.Fuse(shapes)
 
 
 def _point(position: Array) -> tuple[float, float, float]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.spatial.frame import Frame
+from flexstage.solid.fea.geometry.piece import Piece, form_digest
 
 Answer = tuple[str, str]
 """Description of a problem, and advice."""
@@ -39,25 +39,17 @@ def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
             yield Finding(first.where, f"{what}{alike}", advice)
 
 
-def relative_frame(frame: Frame, base: Frame) -> Frame:
-    """Return a frame relative to a `base` frame, rounded so that all instances of a unit have equal frames.
+def piece_key(piece: Piece) -> str:
+    """Format the form and the frame of a piece as a string, equal for frames that differ only by rounding error.
 
-    >>> relative_frame(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
-    [0.0, 1.0, 1.0]
-    """
-    back = np.real(base.rotation).T
-    rotation, position = back @ np.real(frame.rotation), back @ (np.real(frame.position) - np.real(base.position))
-    return Frame(np.round(rotation, 12) + 0.0, np.round(position, 12) + 0.0)
-
-
-def frame_key(frame: Frame) -> str:
-    """Format a frame as a string, equal for frames that differ only by rounding error.
-
-    >>> frame_key(Frame(np.eye(3), np.zeros(3))) == frame_key(Frame(np.eye(3), np.full(3, 1e-13)))
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> from flexstage.spatial.frame import Frame
+    >>> (own,) = bar().pieces
+    >>> piece_key(own) == piece_key(own.within(Frame(np.eye(3), np.full(3, 1e-13))))
     True
     """
-    numbers = np.round(np.concatenate([np.ravel(frame.rotation), frame.position]), 9) + 0.0
-    return ",".join(f"{value:.9f}" for value in numbers)
+    numbers = np.round(np.concatenate([np.ravel(piece.frame.rotation), piece.frame.position]), 9) + 0.0
+    return f"{form_digest(piece.form)} {numbers.tolist()}"
 
 
 def distance_text(millimetres: float) -> str:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number
 from flexstage.base.register import Register
 from flexstage.base.storage.digest import digest
-from flexstage.mechanism.assembly.expand import PlacedLink
-from flexstage.parts.body import Cylinder, Solid
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink
+from flexstage.parts.body import Cylinder, PlacedSolid, Solid
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.material import Material, Oriented
 from flexstage.parts.part import Part, Restricted
@@ -88,6 +89,21 @@ class Piece:
         """Name of the body to which the piece belongs, or of the link."""
         return self.name if self.body is None else self.body
 
+    def within(self, base: Frame) -> Piece:
+        """Return the piece in the axes of `base`, rounded so that all instances of a unit have equal pieces."""
+        return replace(self, frame=relative_frame(self.frame, base))
+
+
+def relative_frame(frame: Frame, base: Frame) -> Frame:
+    """Return a frame relative to a `base` frame, rounded so that all instances of a unit have equal frames.
+
+    >>> relative_frame(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
+    [0.0, 1.0, 1.0]
+    """
+    back = np.real(base.rotation).T
+    rotation, position = back @ np.real(frame.rotation), back @ (np.real(frame.position) - np.real(base.position))
+    return Frame(np.round(rotation, 12) + 0.0, np.round(position, 12) + 0.0)
+
 
 def medium(material: Material, rotation: Array | None = None) -> Medium:
     """Return the medium of a material; for a crystal, the axes of the drawing are the columns of `rotation` (3, 3) in the stage.
@@ -160,6 +176,39 @@ def form_of(link: PlacedLink) -> Form | Finding | None:
         return None
     what = f"a part of kind {part.kind} has neither a shape nor a specified stiffness"
     return Finding(link.name, what, 'Use a part with a shape, or specify its 6x6 compliance matrix (kind = "compliance_matrix")')
+
+
+def link_forms(assembly: Assembly) -> dict[str, Form]:
+    """Return the forms of all links that have one.
+
+    Raises `DesignError` with the names of links that have neither a shape nor a specified stiffness.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> list(link_forms(expand(parallelogram())))[:2]
+    ['left', 'right']
+    """
+    found = {name: form_of(link) for name, link in assembly.links.items()}
+    require(form for form in found.values() if isinstance(form, Finding))
+    return {name: form for name, form in found.items() if form is not None and not isinstance(form, Finding)}
+
+
+def link_pieces(assembly: Assembly, forms: Mapping[str, Form], rotation: Array | None = None) -> Iterator[Piece]:
+    """Yield the pieces of links, in the stage; `rotation` is that of the drawing, for crystals (see `medium`)."""
+    for name, form in forms.items():
+        link = assembly.links[name]
+        if isinstance(form, Piezo):
+            yield Piece(name, form, stack_medium(form), link.frame)
+        elif link.material is not None:
+            yield Piece(name, form, medium(link.material, rotation), link.frame)
+
+
+def body_pieces(
+    body: str, solids: Mapping[str, PlacedSolid], materials: Mapping[str, Material], rotation: Array | None = None
+) -> Iterator[Piece]:
+    """Yield the pieces of a body, in the stage; `rotation` is that of the drawing, for crystals (see `medium`)."""
+    for name, placed in solids.items():
+        yield Piece(name, placed.solid, medium(materials[placed.solid.material], rotation), placed.frame, body)
 
 
 def form_digest(form: Form) -> str:

@@ -13,7 +13,7 @@ from netgen import occ
 
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
-from flexstage.solid.fea.geometry.cad import cad, half_extents
+from flexstage.solid.fea.geometry.cad import cad, footprints, half_extents
 from flexstage.solid.fea.geometry.draw import draw_form
 from flexstage.solid.fea.geometry.near import Question, distance_text, findings_of
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Piece, coordinates, thinnest
@@ -60,7 +60,7 @@ def _answers(component: Component, *, coarse: bool) -> Iterator[tuple[str, str]]
         if not coarse:
             yield f"its outlines cannot be joined by the CAD kernel ({error})", "Look for faces that nearly coincide"
         return
-    pieces = _add_footprints(component)
+    pieces = (*component.pieces, *footprints(component))
     smallest: dict[tuple[int, ...], _Sliver] = {}
     for sliver in _slivers(shape, pieces):
         if sliver.pieces not in smallest or sliver.size < smallest[sliver.pieces].size:
@@ -76,15 +76,6 @@ def _finding(sliver: _Sliver, pieces: Sequence[Piece]) -> tuple[str, str]:
     scale = distance_text(thinnest(thin.form) * MILLIMETRES)
     what = f"{sliver.kind.format(distance_text(sliver.size))} is left at {names}; the thinnest piece there, {thin.name}, is {scale} thick"
     return what, "Make their faces flush, or the step between them larger"
-
-
-def _add_footprints(component: Component) -> tuple[Piece, ...]:
-    stamps = (
-        Piece(item.joint.link, item.footprint, component.pieces[0].medium, item.stamp)
-        for item in component.interfaces
-        if item.footprint is not None and item.stamp is not None
-    )
-    return (*component.pieces, *stamps)
 
 
 def _slivers(shape: occ.TopoDS_Shape, pieces: Sequence[Piece]) -> Iterator[_Sliver]:

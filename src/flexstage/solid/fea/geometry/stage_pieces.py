@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import refuse
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.geometry.outline import Outline, outlines
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.parts.piezo import Piezo
-from flexstage.solid.fea.geometry.piece import Piece, form_of, medium, stack_medium
+from flexstage.solid.fea.geometry.piece import Piece, body_pieces, link_forms, link_pieces
 from flexstage.solid.fea.solver.component import Joint, link_joints
 
 
@@ -48,24 +48,16 @@ def stage_pieces(mechanism: Mechanism) -> Stage:
     (27, 'steel', 'platform')
     """
     assembly = expand(mechanism)
-    forms = {name: form for name, link in assembly.links.items() if (form := form_of(link)) is not None}
-    require(form for form in forms.values() if isinstance(form, Finding))
-    pieces: dict[str, Piece] = {}
-    materials: dict[str, str] = {}
-    owned = [(body.name, body.solids) for body in assembly.bodies.values()] + [(GROUND, assembly.ground)]
-    for body, solids in owned:
-        for name, placed in solids.items():
-            pieces[name] = Piece(name, placed.solid, medium(mechanism.materials[placed.solid.material]), placed.frame, body)
-            materials[name] = placed.solid.material
-    for name, form in forms.items():
-        link = assembly.links[name]
-        if isinstance(form, Finding):
-            continue
-        if isinstance(form, Piezo):
-            pieces[name], materials[name] = Piece(name, form, stack_medium(form), link.frame), link.link.part
-        elif link.material is not None:
-            pieces[name], materials[name] = Piece(name, form, medium(link.material), link.frame), form.material
-    joints = {name: link_joints(assembly.links[name], pieces[name].form) for name in forms}
+    forms, owned = link_forms(assembly), {**{name: body.solids for name, body in assembly.bodies.items()}, GROUND: assembly.ground}
+    found = [
+        *(piece for body, solids in owned.items() for piece in body_pieces(body, solids, mechanism.materials)),
+        *link_pieces(assembly, forms),
+    ]
+    pieces = {piece.name: piece for piece in found}
+    materials = {
+        name: assembly.links[name].link.part if isinstance(piece.form, Piezo) else piece.form.material for name, piece in pieces.items()
+    }
+    joints = {name: link_joints(assembly.links[name], form) for name, form in forms.items()}
     return Stage(assembly, pieces, {outline.name: outline for outline in outlines(assembly)}, joints, materials)
 
 

@@ -37,7 +37,7 @@ def _pieces(component: Component) -> Iterator[str]:
         owner = -1 if piece.body is None else bodies.index(piece.body)
         yield f"piece {form_digest(piece.form)} {piece.medium} {_frame(piece.frame)} {owner};"
     for item in component.interfaces:
-        stamp = "" if item.footprint is None or item.stamp is None else f"{form_digest(item.footprint)} {_frame(item.stamp)}"
+        stamp = "" if item.footprint is None else f"{form_digest(item.footprint.form)} {_frame(item.footprint.frame)}"
         yield f"joint {_frame(item.joint.frame)} {stamp} {item.yields};"
     for joint in component.fixed:
         yield f"fixed {_frame(joint.frame)};"

@@ -8,19 +8,20 @@ single link in its own frame), so that equal components are reduced once.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import chain
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
-from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, copies, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
-from flexstage.solid.fea.geometry.piece import Form, Piece, end_area, form_of, medium, span, stack_medium
+from flexstage.solid.fea.geometry.piece import Form, Piece, body_pieces, end_area, link_forms, link_pieces, relative_frame, span
 from flexstage.solid.fea.solver.ties import End, ends
 from flexstage.spatial.frame import Frame, identity
 
@@ -38,15 +39,14 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """A joint at the boundary of a component: the end face of one of its links, or the imprint (`footprint`) of another component's link.
+    """A joint at the boundary of a component: the end face of one of its links, or of another component's link (`footprint`).
 
     A joint `yields` if the solids on both sides are elastic: the face of the joint then deforms equally on both sides. A face on a rigid
     body or on an end cap of a stack stays plane.
     """
 
     joint: Joint
-    footprint: Form | None = None
-    stamp: Frame | None = None
+    footprint: Piece | None = None
     yields: bool = False
 
 
@@ -76,7 +76,7 @@ class Component:
 class _Graph:
     assembly: Assembly
     materials: Mapping[str, Material]
-    forms: Mapping[str, Form]
+    links: Mapping[str, Piece]
     joints: Mapping[str, tuple[Joint, Joint]]
     owner: Mapping[str, str]
 
@@ -98,9 +98,9 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
     ['platform', 'B1/base', 'B1/tip', 'B1/pzt']
     """
     assembly = expand(mechanism)
-    forms = _forms(assembly)
-    joints = {name: link_joints(assembly.links[name], form) for name, form in forms.items()}
-    graph = _Graph(assembly, mechanism.materials, forms, joints, _owners(assembly, forms, cut))
+    links = {piece.name: piece for piece in link_pieces(assembly, link_forms(assembly))}
+    joints = {name: link_joints(assembly.links[name], piece.form) for name, piece in links.items()}
+    graph = _Graph(assembly, mechanism.materials, links, joints, _owners(assembly, links, cut))
     frames = {name: frame.right_handed for name, _, frame in copies(mechanism)}
     members: dict[str, list[str]] = {}
     for node, owner in graph.owner.items():
@@ -146,6 +146,7 @@ def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
     """Return the two joints of a link: its end face towards -x of the link frame joins the first body, the other the second body.
 
     >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.solid.fea.geometry.piece import form_of
     >>> link = next(iter(expand(parallelogram()).links.values()))
     >>> [joint.body for joint in link_joints(link, form_of(link))] == list(link.joins)
     True
@@ -169,100 +170,61 @@ def is_elastic(assembly: Assembly, body: str) -> bool:
     return body != GROUND and bool(assembly.bodies[body].solids)
 
 
-def _forms(assembly: Assembly) -> dict[str, Form]:
-    drawn = {name: form_of(link) for name, link in assembly.links.items()}
-    require(form for form in drawn.values() if isinstance(form, Finding))
-    return {name: form for name, form in drawn.items() if form is not None and not isinstance(form, Finding)}
-
-
 def _group(name: str) -> str:
     return name.rpartition("/")[0]
 
 
-def _owners(assembly: Assembly, forms: Mapping[str, Form], cut: Cut) -> dict[str, str]:
+def _owners(assembly: Assembly, links: Mapping[str, Piece], cut: Cut) -> dict[str, str]:
     """The component of each elastic body and link, named after its first body (a single link: itself)."""
+    order = list(dict.fromkeys(_group(name) for name in (*assembly.bodies, *assembly.links)))
     bodies = [body for body in assembly.bodies if is_elastic(assembly, body)]
-    nodes = sorted([*bodies, *forms], key=lambda name: _order(assembly, name))
-    owner = {node: node for node in nodes}
-    for name, form in forms.items():
+    nodes = sorted([*bodies, *(name for name in assembly.links if name in links)], key=lambda name: order.index(_group(name)))
+    joined = np.zeros((len(nodes), len(nodes)))
+    for name, piece in links.items():
         for body in assembly.links[name].joins:
-            if body in owner and (cut is Cut.NONE or (_group(body) == _group(name) and not isinstance(form, Piezo))):
-                _unite(owner, name, body)
-    return {node: _root(owner, node) for node in nodes}
-
-
-def _order(assembly: Assembly, name: str) -> tuple[int, int]:
-    groups = list(dict.fromkeys(_group(node) for node in [*assembly.bodies, *assembly.links]))
-    places = [*assembly.bodies, *assembly.links]
-    return groups.index(_group(name)), places.index(name)
-
-
-def _root(owner: dict[str, str], node: str) -> str:
-    while owner[node] != node:
-        node = owner[node]
-    return node
-
-
-def _unite(owner: dict[str, str], link: str, body: str) -> None:
-    first, second = _root(owner, link), _root(owner, body)
-    order = list(owner)
-    keep, drop = sorted((first, second), key=order.index)
-    owner[drop] = keep
+            if body in bodies and (cut is Cut.NONE or (_group(body) == _group(name) and not isinstance(piece.form, Piezo))):
+                joined[nodes.index(name), nodes.index(body)] = 1.0
+    labels = connected_components(joined, directed=False)[1].tolist()
+    return {node: nodes[labels.index(label)] for node, label in zip(nodes, labels, strict=True)}
 
 
 def _component(graph: _Graph, nodes: list[str], frames: Mapping[str, Frame]) -> Component:
-    links = [node for node in nodes if node in graph.forms]
-    bodies = [node for node in nodes if node not in graph.forms]
+    links = [node for node in nodes if node in graph.links]
+    bodies = [node for node in nodes if node not in graph.links]
     place = graph.assembly.links[links[0]].frame if not bodies and len(links) == 1 else frames.get(_group(nodes[0]), identity())
-    pieces = [*_body_pieces(graph, bodies, place), *_link_pieces(graph, links, place)]
+    drawn = (body_pieces(body, graph.assembly.bodies[body].solids, graph.materials, place.rotation) for body in bodies)
+    pieces = [*chain(*drawn), *link_pieces(graph.assembly, {name: graph.links[name].form for name in links}, place.rotation)]
     name = bodies[0] if bodies else links[0]
     own, fixed = _own_joints(graph, links, graph.owner[nodes[0]])
     foreign = _footprints(graph, bodies, graph.owner[nodes[0]])
     return Component(
         name=name,
-        pieces=tuple(Piece(piece.name, piece.form, piece.medium, _in_frame(piece.frame, place), piece.body) for piece in pieces),
+        pieces=tuple(piece.within(place) for piece in pieces),
         interfaces=tuple(
-            replace(item, joint=_place(item.joint, place), stamp=None if item.stamp is None else _in_frame(item.stamp, place))
+            replace(item, joint=_place(item.joint, place), footprint=item.footprint and item.footprint.within(place))
             for item in (*own, *foreign)
         ),
         fixed=tuple(_place(joint, place) for joint in fixed),
-        bodies={body: _in_frame(Frame(np.eye(3), graph.assembly.bodies[body].reference), place).position for body in bodies},
+        bodies={body: _point(graph.assembly.bodies[body].reference, place) for body in bodies},
         place=place,
-        seats=tuple(
-            replace(end, point=_in_frame(Frame(np.eye(3), end.point), place).position) for end in ends(graph.assembly) if end.body in bodies
-        ),
+        seats=tuple(replace(end, point=_point(end.point, place)) for end in ends(graph.assembly) if end.body in bodies),
     )
-
-
-def _body_pieces(graph: _Graph, bodies: list[str], place: Frame) -> Iterator[Piece]:
-    for body in bodies:
-        for address, placed in graph.assembly.bodies[body].solids.items():
-            yield Piece(address, placed.solid, medium(graph.materials[placed.solid.material], place.rotation), placed.frame, body)
-
-
-def _link_pieces(graph: _Graph, links: list[str], place: Frame) -> Iterator[Piece]:
-    for name in links:
-        link, form = graph.assembly.links[name], graph.forms[name]
-        if isinstance(form, Piezo):
-            yield Piece(name, form, stack_medium(form), link.frame)
-        elif link.material is not None:
-            yield Piece(name, form, medium(link.material, place.rotation), link.frame)
 
 
 def _own_joints(graph: _Graph, links: list[str], owner: str) -> tuple[list[Interface], list[Joint]]:
     ends = [joint for name in links for joint in graph.joints[name]]
-    joints = [joint for joint in ends if graph.owner.get(joint.body) != owner or isinstance(graph.forms[joint.link], Piezo)]
+    joints = [joint for joint in ends if graph.owner.get(joint.body) != owner or isinstance(graph.links[joint.link].form, Piezo)]
     free = [Interface(joint, yields=_yields(graph, joint)) for joint in joints if joint.body != GROUND]
     return free, [joint for joint in joints if joint.body == GROUND]
 
 
 def _yields(graph: _Graph, joint: Joint) -> bool:
-    return is_elastic(graph.assembly, joint.body) and not isinstance(graph.forms[joint.link], Piezo)
+    return is_elastic(graph.assembly, joint.body) and not isinstance(graph.links[joint.link].form, Piezo)
 
 
 def _footprints(graph: _Graph, bodies: list[str], owner: str) -> list[Interface]:
     return [
-        Interface(joint, graph.forms[joint.link], graph.assembly.links[joint.link].frame, yields=_yields(graph, joint))
+        Interface(joint, graph.links[joint.link], _yields(graph, joint))
         for pair in graph.joints.values()
         for joint in pair
         if joint.body in bodies and graph.owner[joint.link] != owner
@@ -270,11 +232,8 @@ def _footprints(graph: _Graph, bodies: list[str], owner: str) -> list[Interface]
 
 
 def _place(joint: Joint, place: Frame) -> Joint:
-    return replace(joint, frame=_in_frame(joint.frame, place))
+    return replace(joint, frame=relative_frame(joint.frame, place))
 
 
-def _in_frame(frame: Frame, place: Frame) -> Frame:
-    """A frame of the stage in the axes of `place`, rounded: instances of one unit must be equal."""
-    back = np.swapaxes(place.rotation, -1, -2)
-    rotation, position = back @ frame.rotation, back @ (frame.position - place.position)
-    return Frame(np.round(rotation, 12) + 0.0, np.round(position, 12) + 0.0)
+def _point(point: Array, place: Frame) -> Array:
+    return relative_frame(Frame(np.eye(3), point), place).position

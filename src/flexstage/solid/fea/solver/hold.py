@@ -58,8 +58,9 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
     >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
     (True, False)
     """
-    stacks = [piece.name for piece in component.pieces if isinstance(piece.form, Piezo)]
-    return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
+    pieces = (*component.pieces, interface.footprint)
+    stacks = [piece.name for piece in pieces if piece is not None and isinstance(piece.form, Piezo)]
+    return hold is Hold.RIGID or interface.joint.link in stacks
 
 
 def support(component: Component, space: Field, reduction: Reduction, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
