@@ -9,7 +9,8 @@ pytest.importorskip("netgen")
 
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
-from flexstage.solid.fea.geometry import draw
+from flexstage.solid.fea.geometry.draw import draw_form
+from flexstage.solid.fea.geometry.hinge_edge import SHORTENED
 
 SHIPPED = {"foot_notch": (5.0, 0.85), "lever_notch": (2.0, 1.0), "B12": (3.0, 1.54)}
 
@@ -28,9 +29,7 @@ def integral(radius: float, thickness: float, power: int, shortened: float) -> f
 def test_stopping_the_arc_short_hardly_changes_the_hinge(name):
     """Axial compliance by at most 0.15 %, bending by at most 0.04 %."""
     radius, thickness = SHIPPED[name]
-    axial, bending = (
-        integral(radius, thickness, power, draw.SHORTENED) / integral(radius, thickness, power, 0.0) - 1.0 for power in (1, 3)
-    )
+    axial, bending = (integral(radius, thickness, power, SHORTENED) / integral(radius, thickness, power, 0.0) - 1.0 for power in (1, 3))
     assert -1.5e-3 < axial < 0.0
     assert -4e-4 < bending < 0.0
 
@@ -40,4 +39,4 @@ def test_the_drawn_solid_is_the_shortened_one(name):
     """Its volume is the section's integral, arc and stop included."""
     radius, thickness = SHIPPED[name]
     notch = Notch("steel", thickness=thickness * 1e-3, width=10e-3, profile=Circular(radius * 1e-3))
-    assert draw.draw_form(notch).mass == pytest.approx(10.0 * integral(radius, thickness, -1, draw.SHORTENED), rel=1e-9)
+    assert draw_form(notch).mass == pytest.approx(10.0 * integral(radius, thickness, -1, SHORTENED), rel=1e-9)

@@ -1,7 +1,6 @@
 """Drawing of forms as CAD solids in millimetres, because the CAD kernel has absolute tolerances.
 
-Every hinge is drawn at the origin and then moved, because shapes that are cut far from the origin cannot be meshed. Arcs that would be
-tangent to an end face are shortened by 3 % of their radius: two tangent faces form a wedge of angle zero, which cannot be meshed.
+Every hinge is drawn at the origin and then moved, because shapes that are cut far from the origin cannot be meshed.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import numpy as np
 from netgen import occ
 
 from flexstage.base.finding import refuse
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Number
 from flexstage.base.register import Register
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, SolidWithHoles, Sphere
 from flexstage.parts.cruciform import Cruciform
@@ -23,24 +22,17 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import Circular, Contour, Filleted, Profile, length
-from flexstage.parts.profile import rise as cut_height
+from flexstage.parts.profile import Profile, length
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea.geometry.contour import contour_edges, segments
+from flexstage.solid.fea.geometry.hinge_edge import HingeEdge, extrude, revolve
 from flexstage.solid.fea.geometry.imported import imported_shape
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Piece, millimetres
 from flexstage.solid.fea.geometry.reinforced_leaf import reinforced_solid
 from flexstage.solid.fea.hinges.specimen import Specimen, bar, cut
 from flexstage.spatial.frame import Frame
 from flexstage.spatial.rotation import rotation_vector
-
-SHORTENED = 0.03
-"""Shortening of arcs that would be tangent to an end face, divided by their radius."""
-_STATIONS = 33
-
-Curve = list[occ.TopoDS_Shape]
 
 
 def draw_form(form: Form) -> occ.Solid:
@@ -159,85 +151,17 @@ _SOLIDS: Mapping[type[Solid], Callable[[Any], occ.Solid]] = {
 }
 
 
+def _edge(thickness: Number, profile: Profile) -> HingeEdge:
+    return HingeEdge(0.5 * millimetres(thickness), profile)
+
+
 def _neck(form: Neck) -> occ.Solid:
-    if form.width is not None:
-        flat = _extrude(form.thickness, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
-        upright = _extrude(form.width, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
-        return flat * upright.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
-    half = 0.5 * millimetres(length(form.profile))
-    upper = _upper(0.5 * millimetres(form.thickness), form.profile)
-    start, end = _ends(0.5 * millimetres(form.thickness), form.profile)
-    outline = [(half, end), (half, 0.0), (-half, 0.0), (-half, start)]
-    wire = occ.Wire([*upper, *segments(outline)])
-    return occ.Face(wire).Revolve(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 360.0)
-
-
-def _extrude(thickness: object, profile: Profile, width: object) -> occ.Solid:
-    """The profile on both sides of the xz plane, extruded over the width."""
-    half, rise = 0.5 * millimetres(length(profile)), 0.5 * millimetres(thickness)
-    upper, lower = _upper(rise, profile), _upper(rise, profile, side=-1.0)
-    start, end = _ends(rise, profile)
-    right, left = segments([(half, -end), (half, end)]), segments([(-half, start), (-half, -start)])
-    face = occ.Face(occ.Wire([*lower, *right, *reversed(upper), *left]))  # counter-clockwise: extrusion along +z gives a positive volume
-    depth = millimetres(width)
-    return face.Extrude(occ.Vec(0, 0, depth)).Move(occ.Vec(0, 0, -0.5 * depth))
-
-
-def _ends(rise: float, profile: Profile) -> tuple[float, float]:
-    """Half heights of the two end faces [mm]."""
-    height = rise + millimetres(cut_height(profile))
-    return height, height
-
-
-def _upper(rise: float, profile: Profile, side: float = 1.0) -> Curve:
-    """The edge curve y = side (rise + w(x)) from one end face to the other, in the xy plane."""
-    if isinstance(profile, Contour):
-        return contour_edges(profile, rise, side)
-    half, height = 0.5 * millimetres(length(profile)), rise + millimetres(cut_height(profile))
-    if height == rise:
-        return segments([(-half, side * rise), (half, side * rise)])
-    curve, reach, end = _cut(rise, profile, side)
-    left = segments([(-half, side * height), (-reach, side * height), (-reach, side * end)])
-    right = segments([(reach, side * end), (reach, side * height), (half, side * height)])
-    return [*left, *curve, *right]
-
-
-def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, float]:
-    """The curved part, shortened: its edges, its extent along x and its height there [mm]."""
-    if isinstance(profile, Filleted):
-        return _fillet(rise, profile, side)
-    half, height = 0.5 * millimetres(length(profile)), millimetres(cut_height(profile))
-    largest = float(np.arcsin(1.0 - SHORTENED))
-
-    def at(angle: float) -> tuple[float, float]:
-        return half * np.sin(angle), side * (rise + height * (1.0 - np.cos(angle)))
-
-    reach, end = at(largest)
-    curve = _arc(at(-largest), at(0.0), at(largest)) if isinstance(profile, Circular) else _spline(at, largest)
-    return [curve], reach, side * end
-
-
-def _fillet(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, float]:
-    radius, half = millimetres(profile.radius), 0.5 * millimetres(profile.length)
-    straight, largest = half - radius, float(np.arcsin(1.0 - SHORTENED))
-
-    def at(angle: float, sign: float) -> tuple[float, float]:
-        return sign * (straight + radius * np.sin(angle)), side * (rise + radius * (1.0 - np.cos(angle)))
-
-    left = _arc(at(largest, -1.0), at(0.5 * largest, -1.0), at(0.0, -1.0))
-    right = _arc(at(0.0, 1.0), at(0.5 * largest, 1.0), at(largest, 1.0))
-    middle = segments([at(0.0, -1.0), at(0.0, 1.0)]) if straight > 0.0 else []
-    reach, end = at(largest, 1.0)
-    return [left, *middle, right], reach, side * end
-
-
-def _arc(first: tuple[float, float], middle: tuple[float, float], last: tuple[float, float]) -> occ.TopoDS_Shape:
-    return occ.ArcOfCircle(occ.Pnt(*first, 0), occ.Pnt(*middle, 0), occ.Pnt(*last, 0))
-
-
-def _spline(at: Callable[[float], tuple[float, float]], largest: float) -> occ.TopoDS_Shape:
-    angles = np.linspace(-largest, largest, _STATIONS)
-    return occ.SplineInterpolation([occ.Pnt(*at(float(angle)), 0) for angle in angles])
+    flat = _edge(form.thickness, form.profile)
+    if form.width is None:
+        return revolve(flat)
+    over = millimetres(4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
+    upright = extrude(_edge(form.width, form.profile), over)
+    return extrude(flat, over) * upright.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
 
 
 def prism(form: Shaped) -> occ.Solid:
@@ -259,7 +183,7 @@ class Shape:
 
 
 _OWN: Mapping[type[Shaped], Shape] = {
-    Notch: Shape(lambda form: _extrude(form.thickness, form.profile, form.width), cut),
+    Notch: Shape(lambda form: extrude(_edge(form.thickness, form.profile), millimetres(form.width)), cut),
     Neck: Shape(_neck, cut),
     Leaf: Shape(lambda form: _box(form.length, form.thickness, form.width), bar),
     ReinforcedLeaf: Shape(reinforced_solid),
