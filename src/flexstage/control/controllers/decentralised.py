@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
-import scipy
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
@@ -16,7 +16,7 @@ from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
 from flexstage.control.plant_models.coordinates import Coordinates
-from flexstage.control.systems.system import System, select
+from flexstage.control.systems.system import System, block_matrices, select
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,24 +57,22 @@ class Decentralised(CheckedFields):
         (('error.x', 'reference.x', 'applied.B'), ('command.B',))
         """
         chains = loop_systems(self, step)
-        loops, coordinates, count = self.loops, self.loops.coordinates, len(chains)
-        A = scipy.linalg.block_diag(*(each.A for each in chains))
-        entries = [scipy.linalg.block_diag(*(each.B[:, [column]] for each in chains)) for column in range(3)]
-        exit_ = scipy.linalg.block_diag(*(each.C for each in chains))
-        direct = [np.diag([each.D[0, column] for each in chains]) for column in range(3)]
+        loops, coordinates = self.loops, self.loops.coordinates
+        A, B, C, D = block_matrices(chains)
         # applied strokes, projected on the loops: redundant actuators outnumber the loops
         seen = (loops.sense, loops.sense, np.linalg.pinv(loops.drive))
         found = System(
             A=A,
-            B=np.hstack([entry @ map_ for entry, map_ in zip(entries, seen, strict=True)]),
-            C=loops.drive @ exit_,
-            D=np.hstack([loops.drive @ matrix @ map_ for matrix, map_ in zip(direct, seen, strict=True)]),
+            B=np.hstack([B[:, column::3] @ map_ for column, map_ in enumerate(seen)]),
+            C=loops.drive @ C,
+            D=np.hstack([loops.drive @ D[:, column::3] @ map_ for column, map_ in enumerate(seen)]),
             inputs=coordinates.controller_inputs(),
             outputs=coordinates.commands("command."),
             step=step,
         )
-        poses = [f"pose.{name}" for name in coordinates.names] if any(np.any(each.B[:, 1]) for each in chains) and count else []
-        whole = with_feedforward(_drop_unused_poses(found, poses), self.feedforward, coordinates)
+        if not np.any(B[:, 1::3]):
+            found = select(found, [name for name in found.input_names if not name.startswith("pose.")], found.output_names)
+        whole = with_feedforward(found, self.feedforward, coordinates)
         return with_prefilters(whole, self.prefilters, loops.sense, coordinates)
 
 
@@ -91,17 +89,8 @@ def loop_systems(control: Decentralised, step: float | None = None) -> tuple[Sys
     >>> round(abs(found[0].transfer(np.array([50.0]))[0, 0, 0]), 12).item()
     0.0
     """
-    rows = tuple(zip(control.laws, control.notches or ((),) * len(control.laws), strict=True))
-    alike = {(id(law), id(filters)): (law, filters) for law, filters in rows}  # a symmetric stage repeats the same row
-    made = {key: _in_series(law, filters, step) for key, (law, filters) in alike.items()}
-    return tuple(made[id(law), id(filters)] for law, filters in rows)
-
-
-def _in_series(law: Law, notches: tuple[Notch, ...], step: float | None) -> System:
-    found = law.system(step)
-    for each in notches:
-        found = filtered(found, each.system(step))
-    return found
+    rows = zip(control.laws, control.notches or ((),) * len(control.laws), strict=True)
+    return tuple(reduce(filtered, (each.system(step) for each in notches), law.system(step)) for law, notches in rows)
 
 
 def filtered(law: System, notch: System) -> System:
@@ -143,11 +132,6 @@ def with_feedforward(control: System, gains: Array | None, coordinates: Coordina
         control.outputs,
         control.step,
     )
-
-
-def _drop_unused_poses(control: System, poses: list[str]) -> System:
-    names = [name for name in control.input_names if not name.startswith("pose.") or name in poses]
-    return select(control, names, control.output_names)
 
 
 def _findings(control: Decentralised) -> Iterator[Finding]:

@@ -214,18 +214,16 @@ def _doubled(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Ar
 
 def _sampled_system(control: LQG) -> System:
     model, M, K, Z = control.model, control.observer, control.regulator, control.integral
-    states, count = len(model.A), len(model.outputs)
-    width = len(model.inputs)
-    step = _step(model)
-    correct = np.eye(states) - M @ model.C
-    output = np.hstack([-K @ correct, Z])
-    direct = np.hstack([np.zeros((width, count)), -K @ M, np.zeros((width, width))])
-    filtered = np.hstack([correct, np.zeros((states, count))])
-    entered = np.hstack([np.zeros((states, count)), M, np.zeros((states, width))])
-    applied = np.hstack([np.zeros((width, 2 * count)), np.eye(width)])
+    states, count, width = len(model.A), len(model.outputs), len(model.inputs)
+    step, seen = _step(model), estimator(model, M)
+    output = np.hstack([-K @ seen.C, Z])
+    applied = np.hstack([np.zeros((width, count)), -K @ M, np.eye(width)])
+    A = scipy.linalg.block_diag(seen.A, np.eye(count))
+    A[:states] += model.B @ output
     error = np.hstack([np.eye(count), np.zeros((count, count)), np.linalg.pinv(Z) / control.tracking])
-    A = np.vstack([model.A @ filtered + model.B @ output, np.hstack([np.zeros((count, states)), np.eye(count)])])
-    B = np.vstack([model.A @ entered + model.B @ (direct + applied), step * error])
+    B = np.vstack([model.B @ applied, step * error])
+    B[:states, count:-width] += seen.B[:, :count]
+    direct = np.hstack([applied[:, :-width], np.zeros((width, width))])
     return System(A, B, output, direct, control.coordinates.controller_inputs(), control.coordinates.commands("command."), model.step)
 
 
