@@ -388,15 +388,12 @@ def _basis(shapes: Array) -> Array:
 
 def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness: Array) -> tuple[ComparedMode, ...]:
     frequencies = first_design(theory.platform_frequencies, 1)
+    rows = (ComparedMode(number + 1, theory.names[index], float(frequencies[number])) for number, index in enumerate(theory.platform))
     return tuple(
-        ComparedMode(
-            number=number + 1,
-            name=theory.names[index],
-            theory=float(frequencies[number]),
-            experiment=_measured_mode(experiment, pairs[number]) if number in pairs else None,
-            assurance=float(likeness[number, pairs[number]]) if number in pairs else None,
-        )
-        for number, index in enumerate(theory.platform)
+        row
+        if (mode := pairs.get(number)) is None
+        else replace(row, experiment=_measured_mode(experiment, mode), assurance=float(likeness[number, mode]))
+        for number, row in enumerate(rows)
     )
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,12 +43,13 @@ class Stabilisation:
     stable: Array
 
 
-@dataclass
-class _Track:
-    poles: list[complex]
-    participations: list[Array]
-    orders: list[int]
-    stable: list[int]
+class _Step(NamedTuple):
+    """Pole of a track at one order."""
+
+    order: int
+    pole: complex
+    participation: Array
+    stable: int
 
 
 def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
@@ -61,23 +65,23 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
     >>> diagram.stable.tolist(), candidates[0].orders
     ([0, 3, 3, 3, 3], 5)
     """
-    tracks: list[_Track] = []
+    tracks: list[list[_Step]] = []
     for poles in found:
         values = poles.values / (2.0 * np.pi)
         chosen = np.flatnonzero(poles.damping < highest_damping)
         _continue_tracks(tracks, values[chosen], poles.participation[chosen], poles.order)
-    rows = [row for track in tracks for row in zip(track.orders, track.poles, track.stable, strict=True)]
-    rows.sort(key=lambda row: (row[0], row[1].imag))
-    values = np.array([row[1] for row in rows], dtype=complex)
+    steps = sorted(itertools.chain(*tracks), key=lambda step: (step.order, step.pole.imag))
+    values = np.array([step.pole for step in steps], dtype=complex)
     diagram = Stabilisation(
-        orders=np.array([row[0] for row in rows], dtype=int),
+        orders=np.array([step.order for step in steps], dtype=int),
         frequencies=np.abs(values),
         damping=-np.real(values) / np.maximum(np.abs(values), 1e-300),
-        stable=np.array([row[2] for row in rows], dtype=int),
+        stable=np.array([step.stable for step in steps], dtype=int),
     )
     needed = max(2, round(_SHARE * len(found)))
-    lasting = [track for track in tracks if len(track.orders) >= needed]
-    common = max((poles.order for poles in found), key=lambda order: (sum(order in track.orders for track in lasting), order))
+    lasting = [track for track in tracks if len(track) >= needed]
+    members = Counter(step.order for track in lasting for step in track)
+    common = max((poles.order for poles in found), key=lambda order: (members[order], order))
     return diagram, tuple(_candidate(track, common) for track in lasting)
 
 
@@ -113,43 +117,38 @@ def _is_double(first: Candidate, second: Candidate) -> bool:
     return abs(first.pole - second.pole) < width and vector_assurance(first.participation, second.participation) > 0.8
 
 
-def _continue_tracks(tracks: list[_Track], values: Array, participations: Array, order: int) -> None:
+def _continue_tracks(tracks: list[list[_Step]], values: Array, participations: Array, order: int) -> None:
     pairs: list[tuple[float, int, int]] = []
     for number, track in enumerate(tracks):
         for index, value in enumerate(values):
-            away = abs(value - track.poles[-1]) / abs(value)
-            similar = vector_assurance(participations[index], track.participations[-1])
-            coincident = abs(value - track.poles[-1]) < -_COINCIDENT * value.real
+            away = abs(value - track[-1].pole) / abs(value)
+            similar = vector_assurance(participations[index], track[-1].participation)
+            coincident = abs(value - track[-1].pole) < -_COINCIDENT * value.real
             if away < _NEAR and (similar > _ALIKE or coincident):
                 pairs.append((away / _NEAR + 1.0 - similar, number, index))
     taken: dict[int, int] = {}
     for _, number, index in sorted(pairs):
         if index not in taken and number not in taken.values():
-            _grow(tracks[number], values[index], participations[index], order)
+            stable = _stability(tracks[number][-1], values[index], participations[index])
+            tracks[number].append(_Step(order, complex(values[index]), participations[index], stable))
             taken[index] = number
-    tracks += [_Track([value], [participations[index]], [order], [0]) for index, value in enumerate(values) if index not in taken]
+    tracks += [[_Step(order, value, participations[index], 0)] for index, value in enumerate(values) if index not in taken]
 
 
-def _grow(track: _Track, value: complex, participation: Array, order: int) -> None:
-    before = track.poles[-1]
+def _stability(before: _Step, value: complex, participation: Array) -> int:
     checks = (
-        abs(abs(value) / abs(before) - 1.0) < _STABLE_FREQUENCY,
-        abs(value.real / before.real - 1.0) < _STABLE_DAMPING,
-        vector_assurance(participation, track.participations[-1]) > _STABLE_PARTICIPATION,
+        abs(abs(value) / abs(before.pole) - 1.0) < _STABLE_FREQUENCY,
+        abs(value.real / before.pole.real - 1.0) < _STABLE_DAMPING,
+        vector_assurance(participation, before.participation) > _STABLE_PARTICIPATION,
     )
-    track.stable.append(next((level for level, good in enumerate(checks) if not good), 3))
-    track.poles.append(complex(value))
-    track.participations.append(participation)
-    track.orders.append(order)
+    return next((level for level, good in enumerate(checks) if not good), 3)
 
 
-def _candidate(track: _Track, common: int) -> Candidate:
+def _candidate(track: list[_Step], common: int) -> Candidate:
     """Member of the common order; without one, that nearest to the median of the upper half of the orders."""
-    if common in track.orders:
-        index = track.orders.index(common)
-    else:
-        first = len(track.poles) // 2
-        values = np.array(track.poles[first:])
-        middle = np.median(np.real(values)) + 1j * np.median(np.imag(values))
-        index = first + int(np.argmin(np.abs(values - middle)))
-    return Candidate(track.poles[index], track.participations[index], len(track.orders))
+    late = track[len(track) // 2 :]
+    values = np.array([step.pole for step in late])
+    middle = np.median(np.real(values)) + 1j * np.median(np.imag(values))
+    typical = late[int(np.argmin(np.abs(values - middle)))]
+    chosen = next((step for step in track if step.order == common), typical)
+    return Candidate(chosen.pole, chosen.participation, len(track))

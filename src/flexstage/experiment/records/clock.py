@@ -108,7 +108,7 @@ def determine_clock(samples: Samples, options: Options, where: str, *, scale: fl
     blocks = [samples.read(start, min(start + _BLOCK, samples.length))[:, 0] * scale for start in range(0, samples.length, _BLOCK)]
     clock = read_clock(np.concatenate([np.zeros(0), *blocks]), where)
     if len(clock.stretches) > 1 and FaultTolerance.GAPS not in options.accept_faults:
-        raise DesignError([_gaps(clock, where)])
+        raise _gaps(clock, where)
     if stated is not None and abs(stated / clock.rate - 1.0) > 1e-3:
         raise refuse(
             where,
@@ -138,7 +138,7 @@ def longest_stretch(record: Record, clock: Clock) -> Record:
     return replace(record.part(*clock.longest), start=clock.starts[clock.stretches.index(clock.longest)])
 
 
-def _gaps(clock: Clock, where: str) -> Finding:
+def _gaps(clock: Clock, where: str) -> DesignError:
     gaps = len(clock.stretches) - 1
     listed = ", ".join(f"{time:.6g} s" for time in clock.starts[1 : 1 + _LISTED])
     start, stop = clock.longest
@@ -146,7 +146,7 @@ def _gaps(clock: Clock, where: str) -> Finding:
         f"there {'is 1 gap' if gaps == 1 else f'are {gaps} gaps'} between samples, before {listed}{' and more' if gaps > _LISTED else ''}"
     )
     length = f"{stop - start} samples ({(stop - start) / clock.rate:.4g} s)"
-    return Finding(where, what, f'The longest stretch without gaps has {length}: accept "gaps" to use only this stretch')
+    return refuse(where, what, f'The longest stretch without gaps has {length}: accept "gaps" to use only this stretch')
 
 
 def _problems(times: Array, typical: float, jumps: int, where: str) -> Iterator[Finding]:

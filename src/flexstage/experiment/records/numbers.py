@@ -69,16 +69,12 @@ class Numbers:
         starts = np.append(-self._run, moves)
         lengths = np.diff(np.append(starts, len(values)))
         at = int(np.argmax(lengths))
-        still = self.still, self.still_from, self.still_at
-        if lengths[at] > self.still:
-            still = int(lengths[at]), self.count + int(starts[at]), float(values[max(0, int(starts[at]))])
+        begin, length = int(starts[at]), int(lengths[at])
+        known = replace(self, still=length, still_from=self.count + begin, still_at=float(values[max(0, begin)]))
         return replace(
-            self,
+            known if length > self.still else self,
             pairs=(min(self.pairs[0], float(equal.min(initial=np.inf))), max(self.pairs[1], float(equal.max(initial=-np.inf)))),
             step=min(self.step, float(steps[moves][np.isfinite(steps[moves])].min(initial=np.inf))),
-            still=still[0],
-            still_from=still[1],
-            still_at=still[2],
             _last=float(values[-1]),
             _run=int(lengths[-1]),
         )

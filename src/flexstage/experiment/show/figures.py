@@ -177,11 +177,11 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
     """
     data, band = found.responses, focus(found)
     own = data.frequencies if lines is None else lines
-    ordinary = None if data.coherence is None else data.coherence[:, :, :LARGEST]
+    ordinary = data.values[:, :, :0] if data.coherence is None else data.coherence[:, :, :LARGEST]
 
     def draw(axes: Any, row: int) -> None:
-        for column in range(0 if ordinary is None else ordinary.shape[2]):
-            x, share = _means(data.frequencies, ordinary[:, row, column], band)  # pyright: ignore[reportOptionalSubscript]
+        for column in range(ordinary.shape[2]):
+            x, share = _means(data.frequencies, ordinary[:, row, column], band)
             axes.plot(x, share, color=SERIES[column % len(SERIES)], linewidth=0.7, label=f"with {found.inputs[column].name}")
         if multiple is not None:
             axes.plot(*_means(own, multiple[:, row], band), color=INK, linewidth=1.3, label="multiple")
@@ -225,12 +225,17 @@ def stabilisation_figure(found: Identified) -> Any:
     >>> len(stabilisation_figure(identify(one_mode_record())).axes)
     2
     """
-    kinds = (("new", ".", "#b8c1cc", 2.0), ("frequency stable", "x", SERIES[1], 2.6), ("also damping", "^", SERIES[4], 2.6))
+    kinds = (
+        ("new", ".", "#b8c1cc", 2.0),
+        ("frequency stable", "x", SERIES[1], 2.6),
+        ("also damping", "^", SERIES[4], 2.6),
+        ("also participation", "o", SERIES[2], 2.6),
+    )
     with style_context():
         figure = canvas(FULL, 3.1)
         axes = panels(figure, 1, 1, Margins(left=0.5, right=0.55, top=0.4))[0, 0]
         _envelope(axes, found)
-        for stable, (label, marker, colour, size) in enumerate((*kinds, ("also participation", "o", SERIES[2], 2.6))):
+        for stable, (label, marker, colour, size) in enumerate(kinds):
             style = {"color": colour, "markersize": size, "markeredgewidth": 0.6, "linestyle": "none"}
             axes.plot(*_poles(found, stable), marker, label=label, **style)
         _mark_modes(axes, found, "mode found")

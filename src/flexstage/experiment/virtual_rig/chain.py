@@ -136,12 +136,13 @@ def amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
     The edges follow the error function: their impulse response decays like a Gaussian function, so that adjacent blocks overlap little.
     """
     low, high = band
-    upper = (frequencies - high) / (TAPER * high)
-    shape = np.where(upper <= 0.0, 1.0, np.where(upper >= 1.0, 0.0, 0.5 * scipy.special.erfc(_STEEPNESS * (2.0 * upper - 1.0))))
-    if low > 0.0:
-        lower = (low - frequencies) / (0.5 * low)
-        shape = shape * np.where(lower <= 0.0, 1.0, np.where(lower >= 1.0, 0.0, 0.5 * scipy.special.erfc(_STEEPNESS * (2.0 * lower - 1.0))))
-    return shape
+    shape = _edge((frequencies - high) / (TAPER * high))
+    return shape * _edge((low - frequencies) / (0.5 * low)) if low > 0.0 else shape
+
+
+def _edge(x: Array) -> Array:
+    """Smooth fall from 1 at x = 0 to 0 at x = 1."""
+    return np.where(x <= 0.0, 1.0, np.where(x >= 1.0, 0.0, 0.5 * scipy.special.erfc(_STEEPNESS * (2.0 * x - 1.0))))
 
 
 def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:

@@ -147,23 +147,18 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
         if rms > driven.sustained:
             yield Finding(name, f"{rms:.4g} {unit} rms exceed the sustained limit of {driven.sustained:.4g} {unit}", "Reduce the drive")
         current = {InputQuantity.STROKE: driven.capacitance * driven.factor(InputQuantity.VOLTAGE) * rate, InputQuantity.CURRENT: rms}
-        yield from _current_findings(name, current.get(driven.own, 0.0), limit)
+        if limit is not None and _PEAK * (drawn := current.get(driven.own, 0.0)) > limit:
+            what = f"peaks of 6 x {drawn:.4g} A rms exceed the amplifier's limit of {limit:.4g} A"
+            yield Finding(name, what, "Reduce the drive or its band, or use a stronger amplifier")
     yield from _gauge_findings(plan, chain)
 
 
-def _current_findings(name: str, rms: float, limit: float | None) -> Iterator[Finding]:
-    if limit is not None and _PEAK * rms > limit:
-        what = f"peaks of 6 x {rms:.4g} A rms exceed the amplifier's limit of {limit:.4g} A"
-        yield Finding(name, what, "Reduce the drive or its band, or use a stronger amplifier")
-
-
 def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
-    walked = plan.walks * np.sqrt(plan.length / plan.rate / 60.0)
-    for name, unit, rms, span in zip(plan.gauges, plan.units, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
+    seen = np.hypot(chain.output_rms, plan.walks * np.sqrt(plan.length / plan.rate / 60.0))
+    for name, unit, rms, span in zip(plan.gauges, plan.units, seen, plan.ranges, strict=True):
         if _PEAK * rms > 0.5 * span:
             what = f"peaks of 6 x {1e6 * rms:.4g} u{unit} rms exceed half of its range, {1e6 * span:.4g} u{unit}"
             yield Finding(name, what, "Reduce the drive or the drift, or use a gauge of larger range")
-    seen = np.hypot(chain.output_rms, walked)
     if np.all(_PEAK * seen < 0.5 * plan.steps):
         best = int(np.argmin(plan.steps / np.maximum(seen, 1e-300)))
         unit, also = plan.units[best], "as at all other gauges"

@@ -160,22 +160,21 @@ def input_factor(mechanism: Mechanism, name: str, quantity: InputQuantity) -> fl
 
 def _driven_input(part: Actuator, limits: StrokeLimits, name: str) -> DrivenInput:
     if isinstance(part, ChargedActuator):
-        low, high = (float(np.real(each[limits.actuators.index(name)])) for each in (limits.low, limits.high))
-        capacitance = np.nan if part.capacitance is None else float(np.real(part.capacitance))
+        low, high = (_real(each[limits.actuators.index(name)]) for each in (limits.low, limits.high))
         volts = {InputQuantity.VOLTAGE: volts_per_metre(part)}
-        return DrivenInput(InputQuantity.STROKE, low, high, float(np.real(part.stroke)), volts, capacitance=capacitance)
+        return DrivenInput(InputQuantity.STROKE, low, high, _real(part.stroke), volts, capacitance=_real(part.capacitance))
     assert isinstance(part, ThrustActuator)  # noqa: S101  `drivable_actuators` has no other
     known = list(part.limits)
-    high = min((float(np.real(each.short)) for each in known if each.clips and each.short is not None), default=np.inf)
-    held = min((float(np.real(each.held)) for each in known if each.held is not None), default=np.inf)
+    high = min((_real(each.short, np.inf) for each in known if each.clips), default=np.inf)
+    held = min((_real(each.held, np.inf) for each in known), default=np.inf)
     return DrivenInput(
         own=OWN_QUANTITIES[part.input.si],
         low=-high,
         high=high,
         full=held if np.isfinite(held) else np.nan,
-        factors={InputQuantity.TORQUE if part.axis else InputQuantity.FORCE: float(np.real(part.thrust))},
+        factors={InputQuantity.TORQUE if part.axis else InputQuantity.FORCE: _real(part.thrust)},
         sustained=held,
-        lag=np.inf if part.cutoff is None else float(np.real(part.cutoff)),
+        lag=_real(part.cutoff, np.inf),
     )
 
 
@@ -188,7 +187,7 @@ def volts_per_metre(piezo: ChargedActuator) -> float:
     """
     if piezo.voltage_low is None or piezo.voltage_high is None:
         return float("nan")
-    return float(np.real((piezo.voltage_high - piezo.voltage_low) / piezo.stroke))
+    return _real((piezo.voltage_high - piezo.voltage_low) / piezo.stroke)
 
 
 def _commanded_rms(setup: RigSetup, driven: DrivenInput) -> float:
@@ -198,7 +197,11 @@ def _commanded_rms(setup: RigSetup, driven: DrivenInput) -> float:
 
 
 def _stated(values: list[Number | None], otherwise: float) -> Array:
-    return np.array([otherwise if value is None else float(np.real(value)) for value in values])
+    return np.array([_real(value, otherwise) for value in values])
+
+
+def _real(value: Number | None, otherwise: float = np.nan) -> float:
+    return otherwise if value is None else float(np.real(value))
 
 
 def _asked(value: float | None, metres: Array, stated: Array) -> Array:

@@ -50,12 +50,12 @@ class Layout:
     comments: tuple[str, ...]
 
     def fields(self, line: str) -> list[str]:
-        """Split a line into its fields, without surrounding blanks.
+        """Split a line into its fields, without surrounding blanks and without an empty field after a trailing separator.
 
         >>> Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ()).fields("1.0, 2.0")
         ['1.0', '2.0']
         """
-        return _fields(line, self.delimiter)
+        return _without_last_empty(_fields(line, self.delimiter), len(self.names))
 
     def fits(self, line: str) -> bool:
         """Return whether a line has as many fields as columns; a trailing separator is allowed.
@@ -66,8 +66,7 @@ class Layout:
         """
         expected = len(self.names)
         if self.delimiter is None or '"' in line:
-            fields = self.fields(line)
-            return len(fields) == expected or (len(fields) == expected + 1 and not fields[-1])
+            return len(self.fields(line)) == expected
         count = line.count(self.delimiter) + 1
         return count == expected or (count == expected + 1 and line.rstrip("\r ").endswith(self.delimiter))
 

@@ -57,10 +57,11 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     require(_unknown_names(path, layout, arrays))
     time, lines = _column(layout, arrays.time), _column(layout, arrays.frequencies)
     is_stated = arrays.frequencies != Arrays().frequencies
+    of_responses = replace(options, kind=Kind.RESPONSES, arrays=Arrays())
     if own.text("format") == RESPONSES_FORM:
-        return read_arrays(_own_responses(own, layout, samples), replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
+        return read_arrays(_own_responses(own, layout, samples), of_responses)
     if lines is not None and own.text("format") != RECORD_FORM and (is_stated or time is None):
-        return read_arrays(_responses(path, layout, samples, options, lines), replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
+        return read_arrays(_responses(path, layout, samples, options, lines), of_responses)
     if time is None and not options.rate and "rate" not in said:
         what = f"no column contains times (columns: {', '.join(layout.names[:12])})"
         raise refuse(str(path), what, 'Assign the times (option array "time=..."), or specify the rate (option rate)')

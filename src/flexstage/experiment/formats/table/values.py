@@ -98,7 +98,6 @@ class TableSamples:
         """One line, field by field; raises `DesignError` with its number if invalid."""
         fields, expected = self.layout.fields(text), len(self.layout.names)
         where = f"{self.path}:{self.layout.line + number}"
-        fields = fields[:-1] if len(fields) == expected + 1 and not fields[-1] else fields
         if len(fields) != expected:
             what = f'wrong number of fields (got {len(fields)}, expected {expected}): "{text.strip()[:_LISTED]}"'
             raise refuse(where, what, "Correct the line, or remove it")

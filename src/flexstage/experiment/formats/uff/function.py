@@ -124,10 +124,10 @@ def parse_head(lines: list[str]) -> Function:
     number, response, reference = _parse_places(lines[5])
     precision, count, is_even, first, step = _parse_form(lines[6])
     axes = [_axis(line) for line in lines[7:11]]
-    texts = tuple("" if line.strip() == "NONE" else line.strip() for line in lines[:5])
-    printed = re.split(r"\s+", lines[6][30:].strip())[1]
-    uncertainty = printed_uncertainty(printed) if step else 0.0
-    return Function(texts, number, response, reference, precision, count, is_even, first, step, uncertainty, *axes[:3])
+    uncertainty = printed_uncertainty(lines[6][30:].split()[1]) if step else 0.0
+    return Function(
+        tuple(map(_text, lines[:5])), number, response, reference, precision, count, is_even, first, step, uncertainty, *axes[:3]
+    )
 
 
 def _parse_places(line: str) -> tuple[int, tuple[str, int, int], tuple[str, int, int]]:
@@ -166,7 +166,7 @@ def _whole(text: str) -> int:
 
 
 def _text(text: str) -> str:
-    return "" if text.strip() in ("NONE", "") else text.strip()
+    return "" if text.strip() == "NONE" else text.strip()
 
 
 def place_name(place: tuple[str, int, int]) -> str:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
 from flexstage.experiment.formats.arrays import Contents, complex_of, held_array, read_arrays, side_by_side
@@ -56,7 +56,7 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     histories = [each for each in found if each.function.is_time]
     responses = [each for each in found if each.function.is_response]
     if not histories and not responses:
-        raise DesignError([_nothing(path, found)])
+        raise _nothing(path, found)
     coherences = [each for each in found if each.function.kind == COHERENCE]
     record = (_record(path, histories, options),) if histories and options.kind is not Kind.RESPONSES else ()
     return (*record, *(_responses(path, responses, coherences, options) if responses and options.kind is not Kind.RECORD else ()))
@@ -77,13 +77,13 @@ def _where(path: Path, found: DataSet) -> str:
     return f"{path}:{found.line}: {_name(found)}"
 
 
-def _nothing(path: Path, found: list[DataSet]) -> Finding:
+def _nothing(path: Path, found: list[DataSet]) -> DesignError:
     if not found:
-        return Finding(str(path), "it has no function at nodal degrees of freedom (data set 58)", "Export time histories or responses")
+        return refuse(str(path), "it has no function at nodal degrees of freedom (data set 58)", "Export time histories or responses")
     counts = Counter(KINDS.get(each.function.kind, f"function of type {each.function.kind}") for each in found)
     listed = ", ".join(f"{count} x {kind}" for kind, count in counts.items())
     what = f"it contains only {listed}, but no time histories or frequency response functions"
-    return Finding(str(path), what, "Modes follow from phases between channels: export the time histories, or frequency response functions")
+    return refuse(str(path), what, "Modes follow from phases between channels: export the time histories, or frequency response functions")
 
 
 def _name(found: DataSet) -> str:
@@ -219,7 +219,7 @@ def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Option
         )
     complete = tuple(output for output, lack in missing.items() if not lack)
     if not complete:
-        raise DesignError([Finding(str(path), "no output has responses to all inputs", "Select the inputs (option inputs)")])
+        raise refuse(str(path), "no output has responses to all inputs", "Select the inputs (option inputs)")
     return complete, inputs
 
 
@@ -257,13 +257,12 @@ def _complex(found: DataSet) -> Array:
 def _frequencies(path: Path, found: list[DataSet]) -> Array:
     """Common frequencies of all responses."""
     axes = [_axis(each) for each in found]
-    differ = [
-        each
+    advice = "Export all responses over the same frequencies, or select matching ones (options inputs, outputs)"
+    require(
+        Finding(_where(path, each), f"its frequencies differ from those of {_name(found[0])}", advice)
         for each, axis in zip(found, axes, strict=True)
         if len(axis) != len(axes[0]) or not np.allclose(axis, axes[0], rtol=1e-6, atol=0.0)
-    ]
-    advice = "Export all responses over the same frequencies, or select matching ones (options inputs, outputs)"
-    require(Finding(_where(path, each), f"its frequencies differ from those of {_name(found[0])}", advice) for each in differ)
+    )
     return axes[0]
 
 
@@ -285,5 +284,5 @@ def _coherence(
     lack = [_pair(each) for each in itertools.chain(*rows) if _pair(each) not in stored]
     if lack and lack == list(table)[-1:] and len(table) > 1 and FaultTolerance.INCOMPLETE not in options.accept_faults:
         what = f"only the last response, of {lack[0][0]} to {lack[0][1]}, has no coherence: the file may be truncated"
-        raise DesignError([Finding(str(path), what, 'Export the file again, or accept "incomplete" to omit coherence')])
+        raise refuse(str(path), what, 'Export the file again, or accept "incomplete" to omit coherence')
     return None if lack else [[stored[_pair(each)] for each in row] for row in rows]

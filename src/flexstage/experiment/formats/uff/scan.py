@@ -119,9 +119,7 @@ def _read_binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, 
     if form != 2:
         raise ValueError(f"unsupported number format (got {form}, expected 2: IEEE; 1 is VAX, 3 is IBM)")
     start = stream.tell()
-    layouts = [
-        Layout.of(function, short_axis=short) for short in ((False, True) if not function.is_even and function.is_double else (False,))
-    ]
+    layouts = [Layout.of(function, short_axis=short) for short in (False, True)]
     layout = next((each for each in layouts if _closes(stream, start + each.size * function.count)), None)
     if layout is not None:
         stream.seek(start + layout.size * function.count)
@@ -168,26 +166,16 @@ def _next_mark(stream: BinaryIO, start: int) -> int:
 
 
 def _read_printed(stream: BinaryIO, line: int, function: Function) -> DataSet:
-    numbers, problem = _words(stream, Layout.of(function), function)
-    return DataSet(function, InMemory(numbers), line, problem)
-
-
-def _words(stream: BinaryIO, layout: Layout, function: Function) -> tuple[Array, str | None]:
     """Values of any spacing, up to the mark, without an incomplete last value."""
-    chunks: list[Array] = []
+    layout, chunks = Layout.of(function), [np.zeros(0)]
     while (raw := stream.readline()) and raw.strip() != b"-1":
-        chunks.append(_numbers(raw if raw.endswith(b"\n") else _without_last(raw), layout))
-    numbers = np.concatenate(chunks) if chunks else np.zeros(0)
+        chunks.append(_numbers(raw if raw.endswith(b"\n") else re.sub(rb"\S+\s*$", b"", raw), layout))
+    numbers = np.concatenate(chunks)
     count = min(function.count, len(numbers) // layout.columns)
     if np.any(numbers[function.count * layout.columns :]):  # zeros may fill the last line
         raise ValueError(f"it has {len(numbers) // layout.columns} values (expected {function.count} by its header)")
     problem = f"it is truncated: it has {count} values (expected {function.count} by its header)" if count < function.count else None
-    return numbers[: count * layout.columns].reshape(count, layout.columns), problem
-
-
-def _without_last(raw: bytes) -> bytes:
-    """Line without its last word, which may be truncated."""
-    return re.sub(rb"\S+\s*$", b"", raw)
+    return DataSet(function, InMemory(numbers[: count * layout.columns].reshape(count, layout.columns)), line, problem)
 
 
 def _numbers(raw: bytes, layout: Layout) -> Array:

@@ -56,18 +56,15 @@ def write_uff(path: str | os.PathLike[str], what: Record | Responses) -> None:
             stream.writelines(_response_functions(what))
 
 
-def _name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
-    long = [channel.name for channel in channels if not _fits(channel.name)]
+def _name_findings(where: str, channels: tuple[Channel, ...]) -> Iterator[Finding]:
     advice = f"Rename the channel: universal files need single-line names of at most {_LONGEST} bytes without outer blanks"
-    wide = [channel for channel in channels if len(channel.unit) > 20]
-    return [Finding(f"{where}: {name}", "its name does not fit into a universal file", advice) for name in long] + [
-        Finding(
-            f"{where}: {channel.name}",
-            f'its unit "{channel.unit}" is too long (got {len(channel.unit)} characters, expected at most 20)',
-            "Shorten the unit",
-        )
-        for channel in wide
-    ]
+    for channel in channels:
+        if not _fits(channel.name):
+            yield Finding(f"{where}: {channel.name}", "its name does not fit into a universal file", advice)
+    for channel in channels:
+        if len(channel.unit) > 20:
+            what = f'its unit "{channel.unit}" is too long (got {len(channel.unit)} characters, expected at most 20)'
+            yield Finding(f"{where}: {channel.name}", what, "Shorten the unit")
 
 
 def _fits(name: str) -> bool:
