@@ -362,22 +362,18 @@ def _residues(
     names = {channel.name for channel in model.inputs}
     columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
     inputs = tuple(experiment.inputs[index].name for index in columns)
-    shape = (-1, len(sensors), len(inputs))
-    if not matched or not inputs:
-        return Residues(tuple(sensors), inputs, *np.zeros((2, 0, *shape[1:])), *np.zeros((2, len(inputs)), dtype=bool))
+    shape = (len(matched), len(sensors), len(inputs))
     sizes = np.array([si_size(mechanism, experiment.inputs[index]) for index in columns])
     shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
     sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
     rows = [names_of(experiment.outputs).index(name) for name in sensors]
     seen = np.array([si_factor(experiment.outputs[row]) for row in rows])[:, None] * experiment.shapes[rows]
     seen = seen if doubt is None else doubt.put_right(seen)
-    drives = (
-        4.0 * np.pi * experiment.frequencies[:, None] * 1j * experiment.participation[:, columns] / np.where(np.isfinite(sizes), sizes, 1.0)
-    )
+    known, volts = np.isfinite(sizes), np.array([is_voltage(experiment.inputs[index].unit) for index in columns], dtype=bool)
+    drives = 4.0 * np.pi * experiment.frequencies[:, None] * 1j * experiment.participation[:, columns] / np.where(known, sizes, 1.0)
     own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
     found = [np.real(seen[:, modes] @ drives[modes]) for _, modes in matched]
-    direct = np.isfinite(sizes) & [not is_voltage(experiment.inputs[index].unit) for index in columns]
-    return normalise(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), direct))
+    return normalise(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), known, known & ~volts))
 
 
 def _basis(shapes: Array) -> Array:
@@ -444,31 +440,22 @@ def _repeated_modes(group: list[int], pairs: dict[int, int], own: Array, seen: A
     return RepeatedModes(numbers, len(members), float(np.arccos(np.clip(cosines[-1], 0.0, 1.0))))
 
 
-def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> list[str]:
-    found = list[str]()
+def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> Iterator[str]:
     if len(sensors) < len(rows):
-        found.append(
-            f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}) for {len(rows)} modes: some modes may look the same."
-        )
-    doubtful = [row for row in rows if row.assurance is not None and row.assurance < _TRUSTED]
-    found += [
-        f"mode {row.number} ({row.name}): unreliable pairing (got a MAC of {row.assurance:.2f}, expected {_TRUSTED})." for row in doubtful
-    ]
-    found += [
-        f"mode {row.number} ({row.name}): no similar FEA mode (got a MAC of {row.fea_assurance:.2f}, expected {RELIABLE})."
-        for row in rows
-        if row.fea is None and row.fea_assurance is not None
-    ]
+        yield f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}) for {len(rows)} modes: some modes may look the same."
+    for row in rows:
+        if row.assurance is not None and row.assurance < _TRUSTED:
+            yield f"mode {row.number} ({row.name}): unreliable pairing (got a MAC of {row.assurance:.2f}, expected {_TRUSTED})."
+    for row in rows:
+        if row.fea is None and row.fea_assurance is not None:
+            yield f"mode {row.number} ({row.name}): no similar FEA mode (got a MAC of {row.fea_assurance:.2f}, expected {RELIABLE})."
     for group in repeated:
         names = " and ".join(map(str, group.numbers))
         if 0 < group.seen < len(group.numbers):
-            found.append(
-                f"modes {names} are repeated; the experiment shows only {group.seen} of {len(group.numbers)}. Drive other actuators too."
-            )
+            yield f"modes {names} are repeated; the experiment shows only {group.seen} of {len(group.numbers)}. Drive other actuators too."
         if group.angle is not None and group.angle > _TURNED:
             angle = f"{np.rad2deg(group.angle):.0f}"
-            found.append(f"modes {names} are repeated; their measured shapes deviate by up to {angle} degrees from those of theory.")
-    lost = [row for row in rows if row.experiment is None]
+            yield f"modes {names} are repeated; their measured shapes deviate by up to {angle} degrees from those of theory."
+    lost = [f"{row.number} ({row.name}, {row.theory:.4g} Hz)" for row in rows if row.experiment is None]
     if lost:
-        found.append(f"modes not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")
-    return found
+        yield f"modes not found in the experiment: {', '.join(lost)}."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -320,23 +320,19 @@ def _roughness(frequencies: Array, values: Array) -> Array:
     return np.abs(away) ** 2 / (1.0 + share**2 + (1.0 - share) ** 2)
 
 
-def _findings(records: tuple[Record, ...]) -> list[Finding]:
+def _findings(records: tuple[Record, ...]) -> Iterator[Finding]:
     if not records:
-        return [Finding("records", "no record", "Specify a record")]
-    first = records[0]
-    found: list[Finding] = []
+        yield Finding("records", "no record", "Specify a record")
     for record in records:
-        where = record.where
+        where, first = record.where, records[0]
         if not record.inputs:
-            found.append(Finding(where, "no channel is an input", "Specify the input channels"))
+            yield Finding(where, "no channel is an input", "Specify the input channels")
         if not record.outputs:
-            found.append(Finding(where, "no channel is an output", "Specify the output channels"))
+            yield Finding(where, "no channel is an output", "Specify the output channels")
         if record.rate != first.rate:
-            found.append(
-                Finding(where, f"it is sampled at {record.rate:g} Hz, the first record at {first.rate:g} Hz", "Sample all at the same rate")
-            )
-        names, wanted = (set(names_of(each.outputs)) for each in (record, first))
+            what = f"it is sampled at {record.rate:g} Hz, the first record at {first.rate:g} Hz"
+            yield Finding(where, what, "Sample all at the same rate")
+        names, wanted = (sorted(names_of(each.outputs)) for each in (record, first))
         if names != wanted:
-            what = f"its outputs differ from the first record (got {', '.join(sorted(names))}, expected {', '.join(sorted(wanted))})"
-            found.append(Finding(where, what, "Use the same output names in all records"))
-    return found
+            what = f"its outputs differ from the first record (got {', '.join(names)}, expected {', '.join(wanted)})"
+            yield Finding(where, what, "Use the same output names in all records")

@@ -258,7 +258,7 @@ def _result(
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        data_warnings=data_warnings(known, poles, close, elsewhere=elsewhere, widening=widening[order], reach=reach),
+        data_warnings=tuple(data_warnings(known, poles, close, elsewhere=elsewhere, widening=widening[order], reach=reach)),
         peaks=peaks(known, lines, rest, poles, refused=refused, lost=lost),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )

@@ -340,21 +340,22 @@ def rising_problem(frequencies: Array) -> str | None:
     return f"its frequencies do not increase: {how} values {line + 1} and {line + 2}"
 
 
-def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
+def name_findings(where: str, channels: tuple[Channel, ...]) -> Iterator[Finding]:
     """Find faults of channel names: no channels, empty names, duplicates.
 
     >>> [finding.what for finding in name_findings("a.csv", (Channel("S1"), Channel("S1")))]
     ['2 channels have this name']
     """
     if not channels:
-        return [Finding(where, "there is no channel", "Use at least one channel")]
-    counts = Counter(channel.name for channel in channels)
-    unnamed = [Finding(where, f"{counts['']} of {len(channels)} channels have no name", "Name every channel")] if counts[""] else []
-    twice = [name for name, count in counts.items() if count > 1 and name]
-    return unnamed + [Finding(f"{where}: {name}", f"{counts[name]} channels have this name", "Rename all but one") for name in twice]
+        yield Finding(where, "there is no channel", "Use at least one channel")
+    counts = Counter(names_of(channels))
+    if unnamed := counts.pop("", 0):
+        yield Finding(where, f"{unnamed} of {len(channels)} channels have no name", "Name every channel")
+    for name, count in counts.items():
+        if count > 1:
+            yield Finding(f"{where}: {name}", f"{count} channels have this name", "Rename all but one")
 
 
-def _rate_findings(where: str, rate: float) -> list[Finding]:
-    if RATES[0] <= rate <= RATES[1]:
-        return []
-    return [Finding(where, f"the sampling rate is {rate:g} Hz", f"Use a rate between {RATES[0]:g} and {RATES[1]:g} Hz")]
+def _rate_findings(where: str, rate: float) -> Iterator[Finding]:
+    if not RATES[0] <= rate <= RATES[1]:
+        yield Finding(where, f"the sampling rate is {rate:g} Hz", f"Use a rate between {RATES[0]:g} and {RATES[1]:g} Hz")

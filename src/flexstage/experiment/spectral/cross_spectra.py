@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Annotated
@@ -105,7 +105,7 @@ def spectra(record: Record, segments: Segments) -> Spectra:
     """
     size = round(segments.seconds * record.rate)
     inputs, outputs = record.inputs, record.outputs
-    require(_findings(record, size, outputs))
+    require(_findings(record, size))
     chosen = record.select(names_of((*inputs, *outputs)))
     total, averages = _accumulate(chosen, size, segments)
     weight = segments.window.samples(size)
@@ -152,15 +152,15 @@ def independent_averages(averages: int, window: Array, hop: int) -> float:
     return float(averages / (1.0 + 2.0 * sum(shared)))
 
 
-def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[Finding]:
+def _findings(record: Record, size: int) -> Iterator[Finding]:
     where = record.where
-    found = [] if outputs else [Finding(where, "no channel is an output", "Specify the output channels")]
+    if not record.outputs:
+        yield Finding(where, "no channel is an output", "Specify the output channels")
     if size < 8:
-        found.append(Finding(where, f"segments are too short (got {size} samples)", "Use segments of 8 samples or more"))
+        yield Finding(where, f"segments are too short (got {size} samples)", "Use segments of 8 samples or more")
     elif record.length < size:
         lasts = f"the record is shorter than a segment ({record.duration:.4g} s and {size / record.rate:.4g} s)"
-        found.append(Finding(where, lasts, "Use shorter segments, that is a coarser resolution, or record longer"))
-    return found
+        yield Finding(where, lasts, "Use shorter segments, that is a coarser resolution, or record longer")
 
 
 def _hop(size: int, segments: Segments) -> int:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -89,18 +90,18 @@ def _error_findings(known: Prior) -> list[Finding]:
     return [Finding(where, f"out of range (got {share:g})", advice) for where, share in stated.items() if not 1e-6 <= share <= 1.0]
 
 
-def _address_findings(mechanism: Mechanism, names: Sequence[str], priors: Sequence[str]) -> list[Finding]:
+def _address_findings(mechanism: Mechanism, names: Sequence[str], priors: Sequence[str]) -> Iterator[Finding]:
     if not names:
-        return [Finding("free", "no parameter is free", "Specify at least one, e.g. parts.neck.thickness")]
-    findings: list[Finding] = []
+        yield Finding("free", "no parameter is free", "Specify at least one, e.g. parts.neck.thickness")
+        return
     lost: set[str] = set()
     for name in (*names, *priors):
         try:
             locate(mechanism, name)
         except DesignError as error:
-            findings += [_of_link(mechanism, finding) for finding in error.findings]
+            yield from (_of_link(mechanism, finding) for finding in error.findings)
             lost.add(name)
-    return [*findings, *_number_findings(mechanism, [name for name in names if name not in lost])]
+    yield from _number_findings(mechanism, [name for name in names if name not in lost])
 
 
 def _of_link(mechanism: Mechanism, finding: Finding) -> Finding:
@@ -113,14 +114,19 @@ def _of_link(mechanism: Mechanism, finding: Finding) -> Finding:
     return replace(finding, what=what, advice=f"Write {' or '.join(f'{unit}/{link}.{rest}' for unit in units)}")
 
 
-def _number_findings(mechanism: Mechanism, names: Sequence[str]) -> list[Finding]:
-    findings = [_advise(mechanism, finding) for finding in not_numbers(mechanism, tuple(names))]
-    places = [locate(mechanism, name).address for name in names]
-    findings += [Finding(name, "it is named twice", "Name it once") for name in dict.fromkeys(places) if places.count(name) > 1]
+def _number_findings(mechanism: Mechanism, names: Sequence[str]) -> Iterator[Finding]:
+    yield from (_advise(mechanism, finding) for finding in not_numbers(mechanism, tuple(names)))
+    for name, count in Counter(locate(mechanism, name).address for name in names).items():
+        if count > 1:
+            yield Finding(name, "it is named twice", "Name it once")
     for name in names:
-        if isinstance(locate(mechanism, name).node, NumberNode) and get(mechanism, name) is not None:
-            findings += _value_findings(name, get(mechanism, name))
-    return findings
+        value = get(mechanism, name)
+        if not isinstance(locate(mechanism, name).node, NumberNode) or value is None:
+            continue
+        if np.ndim(value):
+            yield Finding(name, f"wrong number of values (got {np.size(value)}, expected 1)", "Update one design at a time")
+        elif value == 0.0:
+            yield Finding(name, "zero has no relative uncertainty", "Free another parameter, or use a value other than 0")
 
 
 def _advise(mechanism: Mechanism, finding: Finding) -> Finding:
@@ -132,12 +138,3 @@ def _advise(mechanism: Mechanism, finding: Finding) -> Finding:
     shape = next(iter(mechanism.bodies[body[1]].solids))
     advice = f"Free a size or a density, e.g. {solids}.{shape}.size.z, or specify the mass instead of the solids"
     return replace(finding, what="the body's mass follows from its solids", advice=advice)
-
-
-def _value_findings(name: str, value: object) -> list[Finding]:
-    number = np.asarray(value)
-    if number.ndim:
-        return [Finding(name, f"wrong number of values (got {number.size}, expected 1)", "Update one design at a time")]
-    if number == 0.0:
-        return [Finding(name, "zero has no relative uncertainty", "Free another parameter, or use a value other than 0")]
-    return []

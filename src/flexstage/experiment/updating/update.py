@@ -439,25 +439,21 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
             yield f"repeated modes {' and '.join(map(str, group.numbers))}: the test shows {group.seen}; the measured mean represents all."
 
 
-def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:
+def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> Iterator[Finding]:
     where = experiment.responses.source or "record"
     count = len(rows) + (0 if gains is None else gains.values.size)
     if not rows:
         what = f"none of the {len(experiment.frequencies)} identified modes matches a platform mode"
-        return [Finding(where, what, "Check names and signs of gauges and the band (flexstage compare lists all modes)")]
-    if count >= len(freed.names):
-        return []
-    seen = ", ".join(row.name for row in rows)
-    what = f"too few data for {len(freed.names)} free parameters (got {count}: {seen}; repeated modes count once)"
-    return [Finding(where, what, "Free fewer parameters, or also compare static gains" if gains is None else "Free fewer parameters")]
+        yield Finding(where, what, "Check names and signs of gauges and the band (flexstage compare lists all modes)")
+    elif count < len(freed.names):
+        seen = ", ".join(row.name for row in rows)
+        what = f"too few data for {len(freed.names)} free parameters (got {count}: {seen}; repeated modes count once)"
+        yield Finding(where, what, "Free fewer parameters, or also compare static gains" if gains is None else "Free fewer parameters")
 
 
-def _without_effect(slopes: Array, freed: Free, gains: Gains | None) -> list[Finding]:
+def _without_effect(slopes: Array, freed: Free, gains: Gains | None) -> Iterator[Finding]:
     """Parameters whose prior deviation changes no datum by a millionth of the datum's deviation."""
-    strength = np.max(np.abs(slopes), axis=0)
     data = "compared frequencies" if gains is None else "compared frequencies and gains"
-    return [
-        Finding(name, f"it has no effect on the {data}", "Remove it from the free parameters: the test has no information on it")
-        for name, size in zip(freed.names, strength, strict=True)
-        if size < _NO_EFFECT
-    ]
+    for name, size in zip(freed.names, np.max(np.abs(slopes), axis=0), strict=True):
+        if size < _NO_EFFECT:
+            yield Finding(name, f"it has no effect on the {data}", "Remove it from the free parameters: the test has no information on it")

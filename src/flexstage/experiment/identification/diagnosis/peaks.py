@@ -121,7 +121,7 @@ def peaks(
             modes = () if doubt is PeakCause.UNDRIVEN else poles
             if (doubt is PeakCause.UNDRIVEN or each.chance < _NOTICED) and not _is_listed(each.pole, modes, found, step):
                 size = np.abs(each.shape)
-                seen = _names(known.responses.outputs, size > _PART * np.max(size))
+                seen = names_where(known.responses.outputs, size > _PART * np.max(size))
                 found.append(Peak(abs(each.pole), doubt, each.chance, -2.0 * each.pole.real, step, seen))
     for peak in narrow_peaks(known.responses, lines, rest, poles) if known.stored else ():
         if not _is_listed(complex(0.0, peak.frequency), (), found, peak.resolution):
@@ -158,7 +158,7 @@ def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Chann
             tone.chance,
             None,
             resolution,
-            _names(outputs, amplitude / size > _LITTLE * np.max(amplitude / size)),
+            names_where(outputs, amplitude / size > _LITTLE * np.max(amplitude / size)),
         )
         for tone, amplitude in found
     ]
@@ -189,7 +189,7 @@ def narrow_peaks(responses: Responses, lines: Array, rest: Array, poles: Array) 
         if least[line] > _ONE_IN or len(found) == _MOST:
             break
         if all(abs(lines[line] - other.frequency) > 1.5 * step for other in found):
-            seen = _names(responses.outputs, np.min(chance[line], axis=1) < _ONE_IN)
+            seen = names_where(responses.outputs, np.min(chance[line], axis=1) < _ONE_IN)
             found.append(Peak(float(lines[line]), PeakCause.NARROW, float(least[line]), None, step, seen))
     return found
 
@@ -212,7 +212,12 @@ def _prominence(rest: Array) -> Array:
     return found
 
 
-def _names(outputs: Sequence[Channel], chosen: Array) -> tuple[str, ...]:
+def names_where(outputs: Sequence[Channel], chosen: Array) -> tuple[str, ...]:
+    """Return the names of the channels chosen by the booleans `chosen` (p,).
+
+    >>> names_where((Channel("S1"), Channel("S2")), np.array([False, True]))
+    ('S2',)
+    """
     return tuple(channel.name for channel, each in zip(outputs, chosen, strict=True) if each)
 
 

@@ -73,27 +73,27 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[list
     size = record.length // BLOCKS
     divisions = [_divide(low, high, shift) for shift in _DIVISIONS]
     every = [sweep for division in divisions for sweep in division]
-    lags = 2 * _rows(len(chosen.channels), 1e-9) + _SKIPPED + 1
+    resolution, count = record.rate / size, len(chosen.channels)
+    places = [_lines(sweep, resolution, size // 2 + 1) for sweep in every]
+    lags = 2 * _rows(count, 1e-9) + _SKIPPED + 1
     parts: list[list[Array]] = [[] for _ in every]
-    power = np.zeros((size // 2 + 1, len(chosen.channels)))
+    power = np.zeros((size // 2 + 1, count))
     for number in range(BLOCKS):
         values = chosen.samples.read(number * size, (number + 1) * size)
         lines = np.fft.rfft(values - np.mean(values, axis=0), axis=0) / np.sqrt(size)
         power += np.abs(lines) ** 2 * (2.0 / record.rate / BLOCKS)
-        for place, sweep in enumerate(every):
-            parts[place].append(_covariances(lines[slice(*_lines(sweep, record.rate / size, len(lines)))], lags))
+        for part, (first, last) in zip(parts, places, strict=True):
+            part.append(_covariances(lines[first:last], lags))
         report((number + 1) / BLOCKS)
     bands = []
-    for sweep, each in zip(every, parts, strict=True):
-        first, last = _lines(sweep, record.rate / size, size // 2 + 1)
-        covariances = np.array(each)
+    for sweep, (first, last), part in zip(every, places, parts, strict=True):
+        covariances = np.array(part)
         scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(np.mean(covariances[:, 0], axis=0))), 1e-300))
         step = size / record.rate / _folded(last - first)
         bands.append(Band(covariances * scale[:, None] * scale, step, first * record.rate / size, sweep, scale))
     lines = np.fft.rfftfreq(size, 1.0 / record.rate)
-    rest, density = iter(bands), np.sqrt(power[1:, :, None]) + 0j
-    found = [list(itertools.islice(rest, len(each))) for each in divisions]
-    return found, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), density)
+    density, count = np.sqrt(power[1:, :, None]) + 0j, len(divisions[0])
+    return [bands[:count], bands[count:]], Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), density)
 
 
 def searched_from(low: float, high: float, *, outputs: int, resolution: float) -> float:

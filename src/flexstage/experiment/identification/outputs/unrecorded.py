@@ -10,7 +10,7 @@ import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.experiment.identification.cluster import vector_assurance
-from flexstage.experiment.identification.diagnosis.peaks import Peak, PeakCause, tone_peaks
+from flexstage.experiment.identification.diagnosis.peaks import Peak, PeakCause, names_where, tone_peaks
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, close_groups, identify
 from flexstage.experiment.identification.outputs.subspace import BLOCKS, AmbientMode, band_covariances, searched_from, shaken_modes
@@ -42,9 +42,8 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     _refuse_floor(records)
     record, tones = remove_tones(records[0].select(names_of(records[0].outputs)))
     resolution = BLOCKS / record.duration
-    low = max(_LOWEST * resolution, search.band[0] if search.band else 0.0)
-    high = min(_HIGHEST * record.rate, search.band[1] if search.band else np.inf)
-    where = record.where
+    lowest, highest = search.band or (0.0, np.inf)
+    low, high, where = max(_LOWEST * resolution, lowest), min(_HIGHEST * record.rate, highest), record.where
     if low >= high:
         what = f"modes up to {high:.4g} Hz are requested, but the record shows only modes above {low:.4g} Hz"
         raise refuse(where, what, "Request another band, or record longer")
@@ -179,8 +178,7 @@ def _result(record: Record, modes: Sequence[AmbientMode], density: Responses, ba
 
 
 def _peak(mode: AmbientMode, doubt: PeakCause, outputs: Sequence[Channel], resolution: float) -> Peak:
-    largest = np.abs(mode.shape) > 0.5
-    named = tuple(channel.name for channel, is_large in zip(outputs, largest, strict=True) if is_large)
+    named = names_where(outputs, np.abs(mode.shape) > 0.5)
     is_in_one_division = doubt is PeakCause.UNSURE and _certainty(mode) >= _EVIDENT
     chance = 1.0 if is_in_one_division else float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0)))
     return Peak(abs(mode.pole), doubt, chance, None if doubt is PeakCause.NARROW else -2.0 * mode.pole.real, resolution, named)
