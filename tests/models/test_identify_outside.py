@@ -9,7 +9,7 @@ import pytest
 
 from flexstage.experiment.example import one_mode_record
 from flexstage.experiment.identification.confidence import NORMAL_95
-from flexstage.experiment.identification.diagnosis.peaks import PeakCause, ResidualResponses
+from flexstage.experiment.identification.diagnosis.peaks import PeakCause
 from flexstage.experiment.identification.diagnosis.peaks import peaks as find_peaks
 from flexstage.experiment.identification.evidence import evidence
 from flexstage.experiment.identification.group import RejectedResonance
@@ -150,7 +150,7 @@ def test_the_probability_of_a_resonance_that_is_not_driven_is_that_of_its_correl
     """The resonance itself is certain; only that the inputs drive it is not, and the note says so."""
     nothing = np.zeros(0)
     silent = RejectedResonance(-0.1 + 20.0j, np.ones(1), 0.4)
-    (found,) = find_peaks(evidence(one_mode_record(), None), ResidualResponses(nothing, nothing, nothing), (silent,), ())
+    (found,) = find_peaks(evidence(one_mode_record(), None), nothing, nothing, nothing, refused=(silent,), lost=())
     assert (found.doubt, found.chance) == (PeakCause.UNDRIVEN, 0.4)
     table = result_table((found,))
     assert table is not None
