@@ -30,19 +30,23 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
     """Write a stroke along a load path as an HTML page: an animated stage with curves and a cursor. The printed page is static."""
-    data, words_beyond = stroke_data(mechanism, path, found), limits(found)
-    beyond = [each for each in words_beyond if each]
+    data, beyond = stroke_data(mechanism, path, found), [each for each in limits(found) if each]
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
-    figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in words_beyond]))
     sections = [
-        section("Over the stroke", [Picture(to_svg(figure, "stroke", "Results over the stroke"), to_typography(f"{words}."))]),
+        section("Over the stroke", [_curves(found, "stroke", "Results over the stroke", f"{words}.")]),
         caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
     ]
     text = f"{words}; {len(beyond)} of the points exceed a limit (first: {beyond[0]})" if beyond else words
-    headline = Headline(to_typography(text), not beyond)
     caption = "Bodies and flexures are shown at large displacements. Red: a limit is exceeded."
-    return _page(mechanism, "A stroke at large displacements", found.provenance, headline, data, sections=sections, said=caption)
+    kind = ("A stroke at large displacements", found.provenance)
+    return _page(mechanism, kind, Headline(text, not beyond), data, sections, said=caption)
+
+
+def _curves(found: Stroke, name: str, title: str, caption: str) -> Picture:
+    """Results along a path, with the points shaded that exceed a limit."""
+    figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in limits(found)]))
+    return Picture(to_svg(figure, name, title), to_typography(caption))
 
 
 def stroke_tables(found: Stroke) -> list[Table]:
@@ -77,9 +81,9 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBucklin
         None if after is None else _beyond_section(after.stroke),
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
     ]
-    headline = Headline(to_typography(_buckling_text(found)), not found.warnings)
     caption = "The amplitude of the mode is arbitrary; choose it with the slider." if known else ""
-    return _page(mechanism, "Buckling", found.provenance, headline, data, sections=sections, said=caption)
+    headline = Headline(_buckling_text(found), not found.warnings)
+    return _page(mechanism, ("Buckling", found.provenance), headline, data, sections, said=caption)
 
 
 def _buckling_text(found: CaseFactors) -> str:
@@ -115,9 +119,8 @@ def shape_of(case: CaseFactor) -> Matrix:
 
 
 def _beyond_section(found: Stroke) -> Section | None:
-    figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in limits(found)]))
     caption = "Equilibria beyond the lowest critical load, as a function of the load factor."
-    shown = Picture(to_svg(figure, "beyond", "Post-buckling path"), caption)
+    shown = _curves(found, "beyond", "Post-buckling path", caption)
     return section("Post-buckling path", [shown, along_table("Results along the path", found.along)])
 
 
@@ -131,8 +134,8 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
         caveat_section(mechanism, found.warnings),
         section("Point by point", misaligned_tables(found)),
     ]
-    headline = Headline(to_typography(_misaligned_text(found)), not bool(np.any(_beyond(found))))
-    return _page(mechanism, "A misalignment", found.provenance, headline, misalign_data(mechanism, found), sections=sections, said=_BENT)
+    headline = Headline(_misaligned_text(found), not bool(np.any(_beyond(found))))
+    return _page(mechanism, ("A misalignment", found.provenance), headline, misalign_data(mechanism, found), sections, said=_BENT)
 
 
 def _misaligned_curves(found: Misaligned) -> Section | None:
@@ -169,10 +172,8 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
         None if worst is None else section("The most critical instance, point by point", misaligned_tables(worst)),
     ]
     data, said = (still_data(mechanism), "") if worst is None else (misalign_data(mechanism, worst), _BENT)
-    provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"
-    return _page(
-        mechanism, "Misalignments", provenance, Headline(to_typography(misalignments_text(found))), data, sections=sections, said=said
-    )
+    kind = ("Misalignments", f"the nonlinear model of {digest(mechanism, physics=True)[:16]}")
+    return _page(mechanism, kind, Headline(misalignments_text(found)), data, sections, said=said)
 
 
 def misalignments_text(found: Misalignments) -> str:
@@ -213,16 +214,9 @@ def misalignment_tables(found: Misalignments) -> list[Table]:
 
 
 def _page(
-    mechanism: Mechanism,
-    kind: str,
-    provenance: str,
-    headline: Headline,
-    data: StageData,
-    *,
-    sections: Iterable[Section | None],
-    said: str = "",
+    mechanism: Mechanism, kind: tuple[str, str], headline: Headline, data: StageData, sections: Iterable[Section | None], *, said: str
 ) -> str:
-    """A page that begins with the animated stage, `said` below it, and ends with its drawings."""
-    origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", __version__))
-    head = Head(mechanism.name or "stage", kind, origin, headline)
+    """A page of a kind and provenance that begins with the animated stage, `said` below it, and ends with its drawings."""
+    origin = (("model", kind[1]), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", __version__))
+    head = Head(mechanism.name or "stage", kind[0], origin, replace(headline, text=to_typography(headline.text)))
     return page(head, [stage_section(data, said=said), *sections, drawing_section(mechanism, data)], {"stage": data})

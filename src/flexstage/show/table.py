@@ -51,6 +51,11 @@ class Column:
     unit: str = ""
     numeric: bool = True
 
+    @property
+    def text(self) -> str:
+        """The head and, in brackets, the unit."""
+        return f"{self.head} [{self.unit}]" if self.unit else self.head
+
 
 _MANY = 60
 _PLAIN = Heading()
@@ -76,8 +81,7 @@ class Table(InNotebook):
 
     def texts(self) -> list[list[str]]:
         """Return heads (with units) and cells as plain text, row by row."""
-        heads = [f"{column.head} [{column.unit}]" if column.unit else column.head for column in self.columns]
-        return [heads, *([cell.text for cell in row] for row in self.rows)]
+        return [[column.text for column in self.columns], *([cell.text for cell in row] for row in self.rows)]
 
 
 def make_table(
@@ -115,6 +119,10 @@ def text_table(
     return make_table(title, heads, cells, notes=notes, provenance=provenance) if rows else None
 
 
+def _cell(text: str) -> Cell:
+    return Cell(text, Mark.FAINT if text in ("0", NO_VALUE) else Mark.PLAIN)
+
+
 def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
     """Format a column of SI values in a display unit, with aligned decimals. With `digits`, each number has that many significant digits.
 
@@ -124,8 +132,7 @@ def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None 
     ['15', '0']
     """
     items = form.factor * _zero_noise(np.array([float(value) for value in values]))
-    texts = align_numbers(items) if digits is None else [number(float(each), digits) for each in items]
-    return [Cell(text, _mark_of(text)) for text in texts]
+    return list(map(_cell, align_numbers(items) if digits is None else [number(float(each), digits) for each in items]))
 
 
 def row_table(
@@ -386,7 +393,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
         shares = _zero_noise(numbers, 1.0).tolist()
         cells = [Cell(percent(each, heading.digits or 4), bar=each if quantity == SHARE else None) for each in shares]
     elif quantity is None and not units:  # numbers of unknown units: noise cannot be identified
-        cells = [Cell(text, _mark_of(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
+        cells = [_cell(number(each, heading.digits or DIGITS)) for each in numbers.tolist()]
     else:
         cells = number_cells(numbers, form, heading.digits)
     cells = [Cell(NO_VALUE, Mark.FAINT) if np.isnan(each) else cell for cell, each in zip(cells, numbers, strict=True)]
@@ -474,8 +481,9 @@ def matrix_table(
         return column_table(title, replace(matrix, values=kept), notes=[*notes, *said], provenance=provenance)
     rows, columns = (tuple(display_unit_of(unit, 0.0, *units) for unit in own) for own in ends)
     heads = [Column(name, _unit(form)) for name, form in zip(short_names(matrix.columns), columns, strict=True)]
+    scales = np.array([column.factor for column in columns])
     lines = [
-        [_row_head(name, form), *(_entry(value * form.factor / column.factor) for value, column in zip(line, columns, strict=True))]
+        [Cell(Column(name, _unit(form)).text, Mark.STRONG), *(_cell(number(each)) for each in (line * form.factor / scales).tolist())]
         for name, form, line in zip(short_names(matrix.rows), rows, kept, strict=True)
     ]
     ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
@@ -492,11 +500,6 @@ def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name.rpartition(".")[2] for name in names) if len(owners) == 1 else names
 
 
-def _row_head(name: str, form: DisplayUnit) -> Cell:
-    unit = _unit(form)
-    return Cell(f"{name} [{unit}]" if unit else name, Mark.STRONG)
-
-
 _ENDS = ("m", "rad", "N", "N m", "K", "K/m", "V", "1")
 
 
@@ -506,23 +509,13 @@ def _ends(matrix: Matrix) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
     if isinstance(matrix.unit, str):
         return None if matrix.unit != "1" else (("1",) * len(matrix.rows), ("1",) * len(matrix.columns))
     for start in _ENDS:
-        columns = _drop_unknown(_denominator(start, unit) for unit in units[0])
-        rows = _drop_unknown(_numerator(line[0], columns[0]) for line in units) if columns else ()
-        if (len(rows), len(columns)) == (len(matrix.rows), len(matrix.columns)) and ratio_units(rows, columns) == units:
+        below = dict(zip(*ratio_units((start,), _ENDS), _ENDS, strict=True))
+        columns = tuple(below.get(unit, "") for unit in units[0])
+        above = {column[0]: top for top, column in zip(_ENDS, ratio_units(_ENDS, columns[:1]), strict=True) if column}
+        rows = tuple(above.get(line[0], "") for line in units if line)
+        if ratio_units(rows, columns) == units:
             return rows, columns
     return None
-
-
-def _denominator(top: str, unit: str) -> str | None:
-    return next((bottom for bottom in _ENDS if ratio_units((top,), (bottom,))[0][0] == unit), None)
-
-
-def _numerator(unit: str, bottom: str) -> str | None:
-    return next((top for top in _ENDS if ratio_units((top,), (bottom,))[0][0] == unit), None)
-
-
-def _drop_unknown(units: Iterable[str | None]) -> tuple[str, ...]:
-    return tuple(unit for unit in units if unit is not None)
 
 
 def _entry_units(matrix: Matrix) -> tuple[tuple[str, ...], ...]:
@@ -535,19 +528,10 @@ def _unit(form: DisplayUnit) -> str:
     return "" if form.unit == "1" else form.unit
 
 
-def _entry(value: float) -> Cell:
-    text = number(float(value))
-    return Cell(text, _mark_of(text))
-
-
 def _with_unit(value: float, unit: str, digits: int) -> Cell:
     text = format_value(value, unit, digits)
-    bare = text.split()[0]
-    return Cell(bare if bare in ("0", NO_VALUE) else text, _mark_of(bare))
-
-
-def _mark_of(text: str) -> Mark:
-    return Mark.FAINT if text in ("0", NO_VALUE) else Mark.PLAIN
+    bare = _cell(text.split()[0])
+    return bare if bare.mark is Mark.FAINT else Cell(text)
 
 
 def first_design(values: Array, axes: int) -> Array:

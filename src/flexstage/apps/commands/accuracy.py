@@ -80,12 +80,7 @@ def workspace(
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
     small = second_order(mechanism, kinematics, found.command)
-    return CommandResult(
-        mechanism,
-        lambda: _with_error(stands.body(found), small),
-        lambda: [*stands.tables(), _small_text(small), *_workspace_tables(found)],
-        model=model,
-    )
+    return stands.result(_with_error(stands.body(found), small), lambda: [_small_text(small), *_workspace_tables(found)])
 
 
 def _with_error(body: Any, small: SecondOrder | None) -> Any:
@@ -127,12 +122,7 @@ def drift(
     """
     stands = command_stage(mechanism, OperatingPointOptions())
     found = drifting.drift(mechanism, stands.links, ground=ground)
-    return CommandResult(
-        mechanism,
-        lambda: stands.body(found),
-        lambda: [*stands.tables(), drift_table(found), gauge_drift_table(found)],
-        model=Model.LUMPED,
-    )
+    return stands.result(stands.body(found), lambda: [drift_table(found), gauge_drift_table(found)])
 
 
 @command()
@@ -187,12 +177,7 @@ def budget(
     noise = spectra(stands.links, input_asd) if input_asd else None
     found = budgeting.budget(mechanism, asked, at=point, temperature=warmth, noise=noise, band=band_limits(band))
     small = second_order(mechanism, ideal(mechanism), asked)
-    return CommandResult(
-        mechanism,
-        lambda: _with_error(stands.body(found), small),
-        lambda: [*stands.tables(), _small_text(small), *error_budget_tables(found)],
-        model=Model.LUMPED,
-    )
+    return stands.result(_with_error(stands.body(found), small), lambda: [_small_text(small), *error_budget_tables(found)])
 
 
 def _reached(mechanism: Mechanism) -> dict[str, float]:

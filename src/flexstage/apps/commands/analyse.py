@@ -153,11 +153,7 @@ def _change_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[
 
 def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     """Main tables, one or two for each analysis; the commands of one analysis print more."""
-    found = analysis.kinematics
-    yield kinematics.mobility_table(found)
-    yield kinematics.mapping_table(found) if found.actuated else None
-    yield kinematics.force_table(found)
-    yield kinematics.gauge_table(found) if found.gauges else None
+    yield from kinematics.kinematics_tables(analysis.kinematics)
     if analysis.statics is not None:
         yield statics.stiffness_table(analysis.statics)
         yield None if analysis.freedoms is None else statics.freedom_stiffness_table(analysis.freedoms)

@@ -38,13 +38,29 @@ from flexstage.show.command.values import band_limits, spectra
 from flexstage.show.document import response_body, stiffness_body
 from flexstage.show.table import Table, result_table
 from flexstage.show.tables import kinematics as motion_tables
-from flexstage.show.tables import lost_motion as loss_tables
-from flexstage.show.tables import statics as static_tables
 from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.force_workspace import drive_force_tables
+from flexstage.show.tables.lost_motion import (
+    budget_table,
+    correction_table,
+    crosstalk_table,
+    energy_table,
+    gain_table,
+    loss_table,
+    parasitic_table,
+)
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
+from flexstage.show.tables.statics import (
+    centre_table,
+    compliance_table,
+    direction_table,
+    freedom_stiffness_table,
+    mass_tables,
+    principal_table,
+    stiffness_table,
+)
 from flexstage.show.viewer.animation import modes_at_data
 from flexstage.show.viewer.data import stage_data
 from flexstage.show.viewer.view import view_of
@@ -71,11 +87,7 @@ def mapping(mechanism: Mechanism, *, model: ModelName = Model.IDEAL) -> CommandR
 
 
 def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
-    yield motion_tables.mobility_table(kinematics)
-    if kinematics.actuated:
-        yield motion_tables.mapping_table(kinematics)
-    yield motion_tables.force_table(kinematics)
-    yield motion_tables.gauge_table(kinematics) if kinematics.gauges else None
+    yield from motion_tables.kinematics_tables(kinematics)
     yield motion_tables.motion_table(kinematics)
     yield motion_tables.freedom_table(kinematics)
     yield from map(result_table, (kinematics.idle, kinematics.redundant))
@@ -110,25 +122,20 @@ def stiffness(
     mass = mass_matrix(mechanism, linear, point=point)
     attempt = Attempts()  # a stage without ideal kinematics may have a stiffness
     freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
-    return CommandResult(
-        mechanism,
-        lambda: there.body(stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing)),
-        lambda: [*there.tables(), *_stiffness_tables(found, freedoms, mass, sagging)],
-        model=model,
-        warnings=there.warnings,
-    )
+    body = there.body(stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing))
+    return there.result(body, lambda: _stiffness_tables(found, freedoms, mass, sagging))
 
 
 def _stiffness_tables(
     found: Statics, freedoms: FreedomStiffness | None, mass: MassMatrix, sagging: Deflection | None
 ) -> Iterator[Table | None]:
-    yield static_tables.stiffness_table(found)
-    yield static_tables.compliance_table(found)
-    yield None if freedoms is None else static_tables.freedom_stiffness_table(freedoms)
-    yield static_tables.principal_table(found)
-    yield static_tables.direction_table(found)
-    yield static_tables.centre_table(found)
-    yield from static_tables.mass_tables(mass)
+    yield stiffness_table(found)
+    yield compliance_table(found)
+    yield None if freedoms is None else freedom_stiffness_table(freedoms)
+    yield principal_table(found)
+    yield direction_table(found)
+    yield centre_table(found)
+    yield from mass_tables(mass)
     yield None if sagging is None else deflection_table(sagging)
 
 
@@ -152,31 +159,19 @@ def lost_motion(
     there, kinematics = command_stage(mechanism, place, model), ideal(mechanism)
     if kinematics.thrusts and not kinematics.actuated:
         pushed = drive_force(kinematics, there.links, force_workspace(mechanism, kinematics, there.links))
-        return CommandResult(
-            mechanism,
-            lambda: there.body(pushed),
-            lambda: [*there.tables(), *drive_force_tables(pushed)],
-            model=model,
-            warnings=there.warnings,
-        )
+        return there.result(there.body(pushed), lambda: drive_force_tables(pushed))
     found = losses.lost_motion(kinematics, there.links)
-    return CommandResult(
-        mechanism,
-        lambda: there.body(found),
-        lambda: [*there.tables(), *_loss_tables(found)],
-        model=model,
-        warnings=there.warnings,
-    )
+    return there.result(there.body(found), lambda: _loss_tables(found))
 
 
 def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
-    yield loss_tables.loss_table(found)
-    yield loss_tables.budget_table(found)
-    yield loss_tables.gain_table(found)
-    yield loss_tables.crosstalk_table(found)
-    yield loss_tables.parasitic_table(found)
-    yield loss_tables.correction_table(found)
-    yield loss_tables.energy_table(found)
+    yield loss_table(found)
+    yield budget_table(found)
+    yield gain_table(found)
+    yield crosstalk_table(found)
+    yield parasitic_table(found)
+    yield correction_table(found)
+    yield energy_table(found)
 
 
 @command("view")
@@ -212,13 +207,7 @@ def modes(
             else _moving_there(mechanism, there.operating_point, found),
             "--view",
         )
-    return CommandResult(
-        mechanism,
-        lambda: there.body(found),
-        lambda: [*there.tables(), mode_table(found)],
-        model=model,
-        warnings=there.warnings,
-    )
+    return there.result(there.body(found), lambda: [mode_table(found)])
 
 
 def _view_ending(path: Path) -> str:
@@ -278,14 +267,5 @@ def response(
     found = responses.response(linear, chosen, inputs or linear.actuators, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
     shaken = random_response(linear, chosen, spectra(linear, input_asd), limits, damping=law) if input_asd else None
-    return CommandResult(
-        mechanism,
-        lambda: there.body(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken}))),
-        lambda: [
-            *there.tables(),
-            response_table(found),
-            None if shaken is None else random_table(shaken),
-        ],
-        model=model,
-        warnings=there.warnings,
-    )
+    body = there.body(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken})))
+    return there.result(body, lambda: [response_table(found), None if shaken is None else random_table(shaken)])

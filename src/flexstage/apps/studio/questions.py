@@ -18,7 +18,7 @@ from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.workspace.strength import sized_links
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.wrench import dead_wrenches
-from flexstage.apps.studio.design.reading import address_of, design, finite, link_lines, problems_of
+from flexstage.apps.studio.design.reading import design, finite, link_lines, problems_of
 from flexstage.apps.studio.protocol import (
     Card,
     Clash,
@@ -42,8 +42,7 @@ from flexstage.base.session import SESSION
 from flexstage.beams.compliance import compliance, stiffness
 from flexstage.beams.stress import stress
 from flexstage.mechanism.addresses.address import addresses, get
-from flexstage.mechanism.addresses.locate import unit_of_copy
-from flexstage.mechanism.assembly.expand import PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.expand import PlacedLink, PlacedSuperelement, expand, unit_of_copy
 from flexstage.mechanism.geometry.contact import gaps
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.lines import line_numbers, line_of
@@ -51,6 +50,7 @@ from flexstage.models.ideal import free_freedoms
 from flexstage.models.linear.static import input_motion, static_gain
 from flexstage.parts.part import Elastic, inner
 from flexstage.show.display import format_value, to_typography
+from flexstage.show.viewer.parts import body_address, link_address, part_facts
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _WITHIN = 2e-3
@@ -72,7 +72,7 @@ def card(text: str, file: str, name: str) -> Card:
     stiff = attempt.of("stiffness", lambda: _six(own, "stiffness"))
     borne = attempt.of("stress", lambda: _stress(known, name)) or (None, None, None)
     shares = attempt.of("shares", lambda: _shares(known, name)) or {}
-    drawn, part = address_of(known.mechanism, link), f"parts.{link.link.part}"
+    drawn, part = link_address(known.mechanism, link), f"parts.{link.link.part}"
     where = [line for line in (line_of(drawn, lines), line_of(part, lines)) if line]
     verified = () if own is None else _verified(known.mechanism, own)
     told = (each for each in part_warnings(known.mechanism) if each.where.partition(".")[0] in (name, link.drawn, part, link.link.part))
@@ -109,16 +109,10 @@ def place(text: str, file: str, line: int) -> Place:
     links = [name for name, row in link_lines(found, lines).items() if row == near]
     parts = {head.split(".")[1] for head in heads if head.startswith("parts.") and len(head.split(".")) > 1}
     links += [name for name, link in expand(found).links.items() if link.link.part in parts and name not in links]
-    bodies = [name for name in expand(found).bodies if any(f"{head}.".startswith(f"{_drawn_body(found, name)}.") for head in heads)]
+    copies = unit_of_copy(found)
+    bodies = [name for name in expand(found).bodies if any(f"{head}.".startswith(f"{body_address(copies, name)}.") for head in heads)]
     inside = (each for each in addresses(found) if line_of(each, lines) == near)
     return Place(line, tuple(links), tuple(bodies), tuple(inside))
-
-
-def _drawn_body(mechanism: Mechanism, name: str) -> str:
-    """Address at which the description defines a body, e.g. `units.vertical.bodies.lever`."""
-    copy, _, own = name.rpartition("/")
-    copies = unit_of_copy(mechanism)
-    return f"units.{copies[copy]}.bodies.{own}" if copy in copies else f"bodies.{name}"
 
 
 def motion(text: str, file: str) -> Motion:
@@ -237,8 +231,6 @@ def _shares(known: StageResults, name: str) -> dict[str, float]:
 
 
 def _facts(link: PlacedLink | PlacedSuperelement) -> Iterator[Fact]:
-    from flexstage.show.viewer.parts import part_facts
-
     yield Fact("joins", " – ".join(link.joins))
     for name, text in part_facts(inner(link.part)):
         yield Fact(name, text)

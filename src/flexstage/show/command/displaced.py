@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -15,6 +15,7 @@ from flexstage.base.units.unit import parse, quantity_of_unit
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
+from flexstage.show.command.answer import CommandResult
 from flexstage.show.command.design import elastic_model
 from flexstage.show.command.options import temperature_option, text_option
 from flexstage.show.command.values import read_pairs
@@ -119,6 +120,10 @@ class CommandStage:
         if self.operating_point is not None:
             return SideBySide((result, {"operating_point": self.operating_point}))
         return result if self.effect is None else SideBySide((result, {"loaded": self.effect}))
+
+    def result(self, body: Any, tables: Callable[[], Iterable[Table | str | None]]) -> CommandResult:
+        """Return the result of a command with a JSON `body` and its tables; those of the operating point are printed first."""
+        return CommandResult(self.mechanism, lambda: body, lambda: [*self.tables(), *tables()], model=self.model, warnings=self.warnings)
 
     def tables(self) -> Iterator[Table | str]:
         """Yield the text on the permanent load, or the tables of the operating point. They are printed before the result."""

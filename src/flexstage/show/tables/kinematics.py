@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show.display import number
@@ -29,6 +31,20 @@ def mobility_table(kinematics: Kinematics) -> Table | None:
     rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage if parts do not fit exactly"
     notes = [actuation_text(kinematics)]
     return text_table("Mobility", ["", Column("number"), "which"], rows, notes=notes, provenance=kinematics.provenance)
+
+
+def kinematics_tables(kinematics: Kinematics) -> Iterator[Table | None]:
+    """Tabulate mobility, and the mappings of actuators and gauges that the stage has.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> len([table for table in kinematics_tables(ideal(double_triangle())) if table])
+    3
+    """
+    yield mobility_table(kinematics)
+    yield mapping_table(kinematics) if kinematics.actuated else None
+    yield force_table(kinematics)
+    yield gauge_table(kinematics) if kinematics.gauges else None
 
 
 def actuation_text(kinematics: Kinematics) -> str:

@@ -110,22 +110,31 @@ class StageData:
 
     def motion_document(self, motion: Motion) -> dict[str, Any]:
         """Convert a motion of this stage to plain values, as in the document."""
-        said: dict[str, Any] = {"group": motion.group.value, "name": motion.name, "label": motion.label}
-        if motion.frequency is not None:
-            said["frequency"] = motion.frequency
-        if motion.remark:
-            said["remark"] = motion.remark
-        said |= {"twists": packed(motion.twists, "<f4"), "reach": float(f"{self.reach(motion):.6g}"), "scaled": motion.frequency is None}
-        for name, known in (("energy", motion.energy), ("stress", motion.stress)):
-            if known is not None:
-                said[name] = packed(np.array([known.get(self.things[number].name, np.nan) for number in self.links]), "<f4")
-        if motion.stress is not None:
-            said["stressed"] = motion.stressed
-        if motion.course is not None:
-            said["course"] = _course(motion.course)
-        if motion.response is not None:
-            said["response"] = _response(motion.response)
-        return said
+        return _known(
+            {
+                "group": motion.group.value,
+                "name": motion.name,
+                "label": motion.label,
+                "frequency": motion.frequency,
+                "remark": motion.remark or None,
+                "twists": packed(motion.twists, "<f4"),
+                "reach": float(f"{self.reach(motion):.6g}"),
+                "scaled": motion.frequency is None,
+                "energy": self._by_link(motion.energy),
+                "stress": self._by_link(motion.stress),
+                "stressed": None if motion.stress is None else motion.stressed,
+                "course": motion.course and _course(motion.course),
+                "response": motion.response and _response(motion.response),
+            }
+        )
+
+    def _by_link(self, known: Mapping[str, float] | None) -> str | None:
+        return None if known is None else packed([known.get(self.things[number].name, np.nan) for number in self.links], "<f4")
+
+
+def _known(document: dict[str, Any]) -> dict[str, Any]:
+    """The entries of a document that are known."""
+    return {key: value for key, value in document.items() if value is not None}
 
 
 def stage_data(
@@ -210,12 +219,7 @@ def _attempt(what: str, work: Callable[[], _Found], notes: list[str]) -> _Found 
 
 
 def _part(thing: DrawnEntry) -> dict[str, Any]:
-    said: dict[str, Any] = {"name": thing.name, "kind": thing.kind.value, "what": thing.what, "address": thing.address}
-    if thing.unit:
-        said["unit"] = thing.unit
-    if thing.line is not None:
-        said["line"] = thing.line
-    return said | {"bodies": list(thing.bodies), "facts": [list(fact) for fact in thing.facts]}
+    return _known(vars(thing) | {"kind": thing.kind.value, "unit": thing.unit or None})
 
 
 def _mesh(mesh: Mesh) -> dict[str, Any]:
@@ -235,15 +239,26 @@ def _mesh(mesh: Mesh) -> dict[str, Any]:
 
 
 def _course(course: PathMotion) -> dict[str, Any]:
-    said: dict[str, Any] = {"points": len(course.said), "frames": course.frames.tolist(), "poses": packed(course.poses, "<f4")}
-    if course.shape is not None:
-        said["shape"] = packed(course.shape, "<f4")
-    return said | {"curves": _curves(course.curves), "beyond": [list(each) for each in course.beyond], "said": list(course.said)}
+    return _known(
+        {
+            "points": len(course.said),
+            "frames": course.frames.tolist(),
+            "poses": packed(course.poses, "<f4"),
+            "shape": None if course.shape is None else packed(course.shape, "<f4"),
+            "curves": _curves(course.curves),
+            "beyond": course.beyond,
+            "said": course.said,
+        }
+    )
 
 
 def _response(response: Response) -> dict[str, Any]:
-    said = {"basis": packed(response.basis, "<f4"), "weights": packed(response.weights, "<f4")}
-    return said | {"curves": _curves(response.curves), "points": len(response.weights)}
+    return {
+        "basis": packed(response.basis, "<f4"),
+        "weights": packed(response.weights, "<f4"),
+        "curves": _curves(response.curves),
+        "points": len(response.weights),
+    }
 
 
 def _curves(curves: Iterable[Curve]) -> list[dict[str, str]]:

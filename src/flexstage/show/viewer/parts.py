@@ -30,11 +30,11 @@ class DrawnEntry:
 
     name: str
     kind: Kind
-    bodies: tuple[int, int]
     what: str
-    unit: str
     address: str
+    unit: str
     line: int | None
+    bodies: tuple[int, int]
     facts: tuple[Fact, ...]
 
 
@@ -56,30 +56,22 @@ class Describer:
         what, address, facts = self._description(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
-        return DrawnEntry(name, kind, (first, second), what, unit if unit in self._copies else "", address, line, facts)
+        return DrawnEntry(name, kind, what, address, unit if unit in self._copies else "", line, (first, second), facts)
 
     def _description(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
         """Its kind, address and facts."""
         if (link := self._links.get(name) or self._links.get(name.removesuffix(_FOOT))) is not None:
-            return "ground" if name.endswith(_FOOT) else kind_name(link.part), self._link_address(link), self._link_facts(link)
+            return "ground" if name.endswith(_FOOT) else kind_name(link.part), link_address(self._mechanism, link), self._link_facts(link)
         if (gauge := self._assembly.gauges.get(name)) is not None:
             return gauge.gauge.kind, f"gauges.{self._gauges.get(name, name)}", self._data(gauge.gauge)
         if name in self._assembly.bodies:
-            return "body", self._body_address(name), self._body_facts(name)
+            return "body", body_address(self._copies, name), self._body_facts(name)
         placed = self._owners.get(name)
         solids = self._assembly.ground if placed is None else self._assembly.bodies[placed].solids
         solid = solids[name].solid
         drawn, _, own = name.rpartition(".")
         facts = self._data(solid) + (() if placed is None else (("body", placed), *self._body_facts(placed)))
-        return type(getattr(solid, "solid", solid)).__name__.lower(), f"{self._body_address(drawn)}.solids.{own}", facts
-
-    def _link_address(self, link: PlacedLink | PlacedSuperelement) -> str:
-        described = link.described if isinstance(link, PlacedLink) else link
-        return ".".join(link_path(self._mechanism, described.drawn.removeprefix("links.")))
-
-    def _body_address(self, name: str) -> str:
-        copy, _, own = name.rpartition("/")
-        return f"units.{self._copies[copy]}.bodies.{own}" if copy in self._copies else f"bodies.{name}"
+        return type(getattr(solid, "solid", solid)).__name__.lower(), f"{body_address(self._copies, drawn)}.solids.{own}", facts
 
     def _link_facts(self, link: PlacedLink | PlacedSuperelement) -> tuple[Fact, ...]:
         return (("part", link.link.part), ("joins", " – ".join(link.joins)), *self._data(inner(link.part)))
@@ -92,6 +84,18 @@ class Describer:
         if id(record) not in self._facts:
             self._facts[id(record)] = tuple(part_facts(record))
         return self._facts[id(record)]
+
+
+def link_address(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
+    """Return the address at which the description defines a link, such as `units.vertical.links.pivot`."""
+    described = link.described if isinstance(link, PlacedLink) else link
+    return ".".join(link_path(mechanism, described.drawn.removeprefix("links.")))
+
+
+def body_address(copies: Mapping[str, str], name: str) -> str:
+    """Return the address at which the description defines a body, such as `units.vertical.bodies.lever`; `copies` names units by copy."""
+    copy, _, own = name.rpartition("/")
+    return f"units.{copies[copy]}.bodies.{own}" if copy in copies else f"bodies.{name}"
 
 
 def part_facts(record: object) -> Iterator[Fact]:

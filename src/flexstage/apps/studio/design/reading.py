@@ -21,14 +21,15 @@ from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import Bound, Quantity
 from flexstage.base.units.unit import show
 from flexstage.mechanism.addresses.address import provenance
-from flexstage.mechanism.addresses.locate import link_path, locate
-from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.addresses.locate import locate
+from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.lines import line_numbers, line_of, spot_of
 from flexstage.show.display import field_unit, preferred_unit
+from flexstage.show.viewer.parts import link_address
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS
 
 _REACH = 0.5
@@ -72,13 +73,7 @@ def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int 
     """Return the line that defines each link."""
     assembly = expand(mechanism)
     found = {**assembly.links, **assembly.superelements}
-    return {name: line_of(address_of(mechanism, link), lines) for name, link in found.items()}
-
-
-def address_of(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
-    """Return the address at which the description defines a link, such as `units.vertical.links.pivot`."""
-    drawn = link.described if isinstance(link, PlacedLink) else link
-    return ".".join(link_path(mechanism, drawn.drawn.removeprefix("links.")))
+    return {name: line_of(link_address(mechanism, link), lines) for name, link in found.items()}
 
 
 def _problem(finding: Finding, rows: list[str], lines: Mapping[str, int], where: str) -> Problem:
