@@ -25,6 +25,8 @@ _UNLUMPED = "deflection under permanent load needs the lumped model"
 _UNSORTED = "requires a platform with fewer than six ideal motions, and a load at its output point"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
 """Fields of an analysis whose documents are named after a command: the command of each field."""
+_OF_SOME_STAGES = {"force_workspace", "drive_force", "stress", "ends"}
+"""Results that a document contains only if the stage has them."""
 
 
 def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
@@ -68,7 +70,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
 def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
     """Return the results of an analysis, by name of the command; results that the model or the stage does not have are `None`."""
     damping = None if analysis.linear is None else analysis.linear.damping
-    return {
+    results = {
         "mapping": analysis.kinematics,
         "stiffness": None
         if analysis.statics is None
@@ -78,15 +80,16 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         "response": None if analysis.response is None else response_body(analysis.response, damping),
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": analysis.workspace,
-        **({} if analysis.force_workspace is None else {"force_workspace": analysis.force_workspace}),
-        **({} if analysis.drive_force is None else {"drive_force": analysis.drive_force}),
-        **({} if analysis.stress is None else {"stress": analysis.stress}),
+        "force_workspace": analysis.force_workspace,
+        "drive_force": analysis.drive_force,
+        "stress": analysis.stress,
         "buckling": analysis.buckling,
-        **({} if analysis.ends is None else {"ends": analysis.ends}),
+        "ends": analysis.ends,
         "drift": analysis.drift,
         "budget": analysis.error_budget,
         "units": analysis.units,
     }
+    return {name: found for name, found in results.items() if found is not None or name not in _OF_SOME_STAGES}
 
 
 def analysis_body(analysis: Analysis) -> Document:
@@ -101,10 +104,9 @@ def analysis_body(analysis: Analysis) -> Document:
     (True, 'the ideal model has no elasticity')
     """
     reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items() if name != "deflection"}  # see stiffness
-    documents = {name: None if found is None else plain(found) for name, found in analysis_results(analysis).items()}
-    loading = None if analysis.loaded is None else plain(analysis.loaded)
-    small = None if analysis.second_order is None else plain(analysis.second_order)
-    body = {"requirements": requirements_body(analysis.verdicts), "loaded": loading, "second_order": small, **documents}
+    results = {"loaded": analysis.loaded, "second_order": analysis.second_order, **analysis_results(analysis)}
+    documents = {name: None if found is None else plain(found) for name, found in results.items()}
+    body = {"requirements": requirements_body(analysis.verdicts), **documents}
     return body | ({"reasons": reasons} if reasons else {})
 
 

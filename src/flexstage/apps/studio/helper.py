@@ -41,7 +41,8 @@ class _Task:
     heard: Callable[[Any], None] = field(compare=False)
 
 
-def _always() -> bool:
+def always() -> bool:
+    """Run a task in any case."""
     return True
 
 
@@ -77,7 +78,7 @@ class Helper:
         self,
         *call: Any,
         urgency: Urgency = Urgency.NOW,
-        wanted: Callable[[], bool] = _always,
+        wanted: Callable[[], bool] = always,
         heard: Callable[[Any], None] = nobody,
     ) -> Outcome | None:
         """Run a task with its arguments, after more urgent tasks, and return its outcome.

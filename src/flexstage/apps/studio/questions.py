@@ -127,9 +127,9 @@ def motion(text: str, file: str) -> Motion:
         attempt.of("inputs", lambda: _inputs(known)),
         attempt.of("ideal", lambda: _ideal(known)),
         attempt.of("gauges", lambda: matrix(static_gain(model, gauges, inputs))) if gauges else None,
-        None if bearing is None else matrix(bearing.per_input),
-        {} if bearing is None else dict(zip(bearing.links, bearing.at(np.zeros(len(inputs))).tolist(), strict=True)),
-        {} if bearing is None else {name: finite(limit) for name, limit in zip(bearing.links, bearing.limits, strict=True)},
+        bearing and matrix(bearing.per_input),
+        bearing.at(np.zeros(len(inputs))) if bearing else {},
+        {name: finite(limit) for name, limit in bearing.limits.items()} if bearing else {},
         attempt.missing,
     )
 
@@ -145,14 +145,14 @@ def posed(text: str, file: str, inputs: Mapping[str, float]) -> Posed:
     twist = static_gain(known.model, _PLATFORM, names).values @ values
     readings = static_gain(known.model, gauges, names).values @ values if gauges else np.zeros(0)
     bearing = Attempts().of("stress", lambda: _bearing(text, file))
-    found = {} if bearing is None else dict(zip(bearing.links, bearing.at(values).tolist(), strict=True))
+    found = bearing.at(values) if bearing else {}
+    read = dict(zip(gauges, readings.tolist(), strict=True))
     beyond = dict(_beyond_strokes(known, dict(zip(names, values.tolist(), strict=True))))
-    beyond |= dict(_beyond_gauges(known, dict(zip(gauges, readings.tolist(), strict=True))))
-    limits = {} if bearing is None else dict(zip(bearing.links, bearing.limits, strict=True))
-    for name, value in found.items():
-        if value > limits[name]:
-            beyond[name] = f"stress {format_value(value, 'Pa')} exceeds the allowable {format_value(limits[name], 'Pa')}"
-    return Posed(tuple(twist.tolist()), dict(zip(gauges, readings.tolist(), strict=True)), found, beyond)
+    beyond |= dict(_beyond_gauges(known, read))
+    for name, limit in bearing.limits.items() if bearing else ():
+        if found[name] > limit:
+            beyond[name] = f"stress {format_value(found[name], 'Pa')} exceeds the allowable {format_value(limit, 'Pa')}"
+    return Posed(tuple(twist.tolist()), read, found, beyond)
 
 
 def slopes(text: str, file: str) -> Slopes:
@@ -207,12 +207,9 @@ def _gap_text(distance: float) -> str:
 def _six(link: PlacedLink | None, what: str) -> Matrix:
     if link is None or not isinstance(link.part, Elastic):
         raise refuse("link", "has no 6x6 matrix of its own", "Use the matrices of the stage")
-    twist, wrench = tuple(COMPONENTS), tuple(FORCES)
-    if what == "compliance":
-        return matrix(
-            Labelled(first_design(compliance(link.part, link.material), 2), twist, wrench, ratio_units(TWIST_UNITS, WRENCH_UNITS))
-        )
-    return matrix(Labelled(first_design(stiffness(link.part, link.material), 2), wrench, twist, ratio_units(WRENCH_UNITS, TWIST_UNITS)))
+    ends = (tuple(COMPONENTS), TWIST_UNITS), (tuple(FORCES), WRENCH_UNITS)
+    law, (rows, columns) = (compliance, ends) if what == "compliance" else (stiffness, ends[::-1])
+    return matrix(Labelled(first_design(law(link.part, link.material), 2), rows[0], columns[0], ratio_units(rows[1], columns[1])))
 
 
 def _stress(known: StageResults, name: str) -> tuple[float | None, float | None, float | None]:
@@ -252,11 +249,12 @@ class Bearing:
         self._gain = static_gain(model, outputs, self.inputs).values
         self._units = tuple(model.inputs[index].unit for index in model.input_index(self.inputs))
         self._rest = dead_wrenches(known.mechanism, model, outputs) + self._gain @ self._bias(known)
-        self.limits = tuple(self._limit(name) for name in self.links)
+        limits = {name: None if link.material is None else finite(link.material.limit) for name, link in self._known.items()}
+        self.limits = {name: np.nan if limit is None else limit for name, limit in limits.items()}
 
-    def at(self, values: Array) -> Array:
-        """Return the peak stress (L,) [Pa] of each link at inputs (m,)."""
-        return self._peaks(self._rest + self._gain @ values)
+    def at(self, values: Array) -> dict[str, float]:
+        """Return the peak stress [Pa] of each link at inputs (m,)."""
+        return dict(zip(self.links, self._peaks(self._rest + self._gain @ values).tolist(), strict=True))
 
     @property
     def per_input(self) -> Labelled:
@@ -282,11 +280,6 @@ class Bearing:
             found = stress(first.part, first.material, rows[members])
             peaks[members] = np.nan if found is None else found.peak
         return peaks
-
-    def _limit(self, name: str) -> float:
-        material = self._known[name].material
-        limit = None if material is None else finite(material.limit)
-        return np.nan if limit is None else limit
 
 
 @SESSION.keep(2)

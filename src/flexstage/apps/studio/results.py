@@ -83,9 +83,7 @@ def figures(text: str, file: str, stored: str, choice: Choice) -> Figures:
     Old values are those of the text `stored` on disk.
     """
     known, attempt = bench(text, file), Attempts()
-    stiff = attempt.of("stiffness", lambda: statics(known.under_load.model))
-    lost = attempt.of("loss", lambda: known.under_load.lost)
-    found = attempt.of("modes", lambda: known.under_load.modes)
+    found, stiff, lost = _linear_results(known, attempt)
     response = attempt.of("response", lambda: _response(known, choice))
     missing = {**attempt.missing, **({} if stiff is None else stiff.reasons)}
     return Figures(
@@ -296,16 +294,13 @@ def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
         return ()
     if kind == "reach":
         return tuple(reach_figures(*_reached(stored, file)[0]))
-    attempt = Attempts()
-    return _key_figures(*(attempt.of(name, each) for name, each in _key_results(known)))  # type: ignore[arg-type]
+    return _key_figures(*_linear_results(known, Attempts()))
 
 
-def _key_results(known: StageResults) -> tuple[tuple[str, Any], ...]:
-    return (
-        ("modes", lambda: known.under_load.modes),
-        ("stiffness", lambda: statics(known.under_load.model)),
-        ("loss", lambda: known.under_load.lost),
-    )
+def _linear_results(known: StageResults, attempt: Attempts) -> tuple[Modes | None, Statics | None, LostMotion | None]:
+    stiff = attempt.of("stiffness", lambda: statics(known.under_load.model))
+    lost = attempt.of("loss", lambda: known.under_load.lost)
+    return attempt.of("modes", lambda: known.under_load.modes), stiff, lost
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Awaitable, Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.design.answers import Reading
@@ -15,7 +15,7 @@ from flexstage.apps.studio.design.history import History, Stored
 from flexstage.apps.studio.design.journal import Draft, Journal, discard, drafts
 from flexstage.apps.studio.design.palette import snippets
 from flexstage.apps.studio.engine import Outcome, failure, problem
-from flexstage.apps.studio.helper import Helper, Urgency, nobody
+from flexstage.apps.studio.helper import Helper, Urgency, always, nobody
 from flexstage.apps.studio.jobs import Jobs
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.storage.store import write
@@ -24,15 +24,16 @@ _QUIET = 0.3
 """Duration up to which a computation is not announced [s]."""
 _STALE = 3.0
 """Time after which a computation of an outdated text is ended with its process [s]."""
-_STAGES: tuple[tuple[str, str], ...] = (
-    ("figures", "stiffness, lost motion, modes and responses"),
-    ("verdicts", "requirements"),
-    ("errors", "errors"),
-    ("reach", "strokes and stress"),
-    ("scene", "the geometry"),
-    ("warnings", "warnings"),
+_STAGES: tuple[tuple[str, str, float], ...] = (
+    ("figures", "stiffness, lost motion, modes and responses", 0.1),
+    ("verdicts", "requirements", 0.05),
+    ("errors", "errors", 0.1),
+    ("reach", "strokes and stress", 0.1),
+    ("scene", "the geometry", 0.2),
+    ("warnings", "warnings", 0.2),
 )
-"""Steps of the computation of a design, in this sequence, and their names."""
+"""Steps of the computation of a design, in this sequence, with their names, and the assumed durations for a design of thirty links before
+the first measurement [s] (benchmarks/studio.py)."""
 
 _TASKS: Mapping[type[Any], str] = {
     say.Part: "card",
@@ -125,7 +126,8 @@ class Session:
         """Answer a request of a page through `tell`: with its result, a refusal, or `Done` if the request has no result."""
         computed = self._computed
         try:
-            told = await self._answers[type(request)](self, request, page, tell) or say.Done(self.history.revision)
+            handle = getattr(self, f"answer_{type(request).__name__.lower()}", self._ask)
+            told = await handle(request, page, tell) or say.Done(self.history.revision)
         except RefusedError as error:
             told = say.Refusal(error.args[0])
         except DesignError as error:
@@ -135,12 +137,12 @@ class Session:
         known = {"revision": computed} if isinstance(told, say.DesignAnswer) else {}
         tell(replace(told, to=request.id, **known))
 
-    async def _edit(self, request: say.Edit, page: int, _: Tell) -> None:
+    async def answer_edit(self, request: say.Edit, page: int, _: Tell) -> None:
         """Accept the page's text; refused after a change by another page unknown to this one."""
         self.history.require_known(request.revision, page)
         self._take(self.history.change(request.text.replace("\r\n", "\n"), page))
 
-    async def _set(self, request: say.Set | say.Rest, page: int, _: Tell) -> None:
+    async def answer_set(self, request: say.Set | say.Rest, page: int, _: Tell) -> None:
         """Write a number into the text; refused if the text was changed meanwhile."""
         value = request.text if isinstance(request, say.Set) else request.value
         async with self._changing:
@@ -150,15 +152,22 @@ class Session:
                 raise refuse(request.address, "the text was changed in the meantime", "Set the value again")
             self._take(self.history.change(written, page))
 
-    async def _insert(self, request: say.Insert, page: int, _: Tell) -> None:
+    answer_rest = answer_set
+
+    async def answer_insert(self, request: say.Insert, page: int, _: Tell) -> None:
+        """Insert a snippet."""
         async with self._changing:
             written = await self._task_value(self._quick, "insert", self.history.text, request.snippet, request.fields)
             self._take(self.history.change(written, page))
 
-    async def _undo(self, request: say.Undo | say.Redo, page: int, _: Tell) -> None:
+    async def answer_undo(self, request: say.Undo | say.Redo, page: int, _: Tell) -> None:
+        """Restore the previous text, or the next one."""
         self._take(self.history.undo(page) if isinstance(request, say.Undo) else self.history.redo(page))
 
-    async def _save(self, request: say.Save, *_: Any) -> None:
+    answer_redo = answer_undo
+
+    async def answer_save(self, request: say.Save, *_: Any) -> None:
+        """Write the text to a file of the folder."""
         path = self._in_folder(request.file) if request.file else self.stored.path
         if path == self.stored.path:
             self.stored = self.stored.write(self.history.text, over=request.over)
@@ -169,12 +178,14 @@ class Session:
         self._protect()
         self._start(self._read())
 
-    async def _browse(self, *_: Any) -> say.Said:
+    async def answer_browse(self, *_: Any) -> say.Said:
+        """List the files of the folder and the shipped cases."""
         paths = sorted(each for each in self.stored.path.parent.glob("[!.]*.toml") if each.is_file())
         specifications = tuple(each.name for each in paths if b'"flexstage specification ' in each.read_bytes())
         return say.Folder(tuple(each.name for each in paths), specifications, await self._task_value(self._quick, "gallery"))
 
-    async def _open(self, request: say.Open, *_: Any) -> None:
+    async def answer_open(self, request: say.Open, *_: Any) -> None:
+        """Open another file; refused if unsaved changes would be lost."""
         path = self._in_folder(request.file)
         if self.history.text != self.stored.text and not request.discard:
             raise refuse(self.stored.path.name, "has unsaved changes", "Save or discard them first")
@@ -207,7 +218,7 @@ class Session:
         self.journal = replace(self.journal, path=stored.path)
         self.drafts = self._found_drafts()
 
-    async def _reload(self, _: say.Reload, page: int, __: Tell) -> None:
+    async def answer_reload(self, _: say.Reload, page: int, __: Tell) -> None:
         """Read the text of the file, which may have changed; the present one remains in the history."""
         self.stored = Stored.read(self.stored.path)
         same = self.stored.text == self.history.text
@@ -216,7 +227,7 @@ class Session:
         if same:
             self._start(self._read())
 
-    async def _recover(self, request: say.Recover, page: int, _: Tell) -> None:
+    async def answer_recover(self, request: say.Recover, page: int, _: Tell) -> None:
         """Restore an unsaved text of an ended studio, or discard it; this studio then protects a restored one."""
         draft = self.drafts.get(request.draft)
         if draft is None:
@@ -230,20 +241,22 @@ class Session:
         self.drafts = {name: each for name, each in self.drafts.items() if name != request.draft}
         self._push_state()
 
-    async def _pin(self, request: say.Pin, *_: Any) -> None:
+    async def answer_pin(self, request: say.Pin, *_: Any) -> None:
+        """Pin the present design, or remove a pinned one."""
         if request.keep and request.name not in self.history.pins and len(self.history.pins) >= 12:
             raise refuse(request.name, "twelve designs are pinned already", "Remove a pinned design first")
         self.history = self.history.pin(request.name, keep=request.keep)
         self._protect()
         self._push_state()
 
-    async def _recall(self, request: say.Recall, page: int, _: Tell) -> None:
+    async def answer_recall(self, request: say.Recall, page: int, _: Tell) -> None:
+        """Restore the text of the file, or of a pinned design."""
         texts = {"": self.stored.text, **self.history.pins}
         if request.name not in texts:
             raise refuse(request.name, "no design is pinned under this name", suggest_nearest(request.name, self.history.pins))
         self._take(self.history.change(texts[request.name], page))
 
-    async def _compare(self, *_: Any) -> say.Said:
+    async def answer_compare(self, *_: Any) -> say.Said:
         """Figures of the file, of all pinned designs and of the present one."""
         texts = {"file": self.stored.text, **self.history.pins, "now": self._design}
         tables = [await self._task_value(self._model, "compared", text, self._file) for text in texts.values()]
@@ -253,14 +266,15 @@ class Session:
         values = tuple(tuple(table.get(name) for table in by_name) for name in known)
         return say.Comparison(tuple(texts), rows, values)
 
-    async def _drag(self, request: say.Drag, *_: Any) -> say.Said | None:
+    async def answer_drag(self, request: say.Drag, *_: Any) -> say.Said | None:
         """Frequencies at a slider's position; for requests faster than the answers, the newest."""
         call = ("drag", self._design, self._file, request.address, request.value)
         outcome = await self._quick.ask(*call, wanted=self._is_newest(request))
         return outcome and say.Frequencies(request.address, request.value, outcome.value or (), outcome.problems)
 
-    async def _pose(self, request: say.Pose, *_: Any) -> say.Said | None:
-        return await self._task_value_while(self._is_newest(request), self._model, "posed", request.inputs)
+    async def answer_pose(self, request: say.Pose, *_: Any) -> say.Said | None:
+        """Displacement at the newest strokes."""
+        return await self._task_value(self._model, "posed", self._design, self._file, request.inputs, wanted=self._is_newest(request))
 
     async def _ask(self, request: Any, *_: Any) -> say.Said:
         """The result of one task, for the request or the computed design."""
@@ -268,7 +282,7 @@ class Session:
         _id, *own = vars(request).values()
         return await self._task_value(helper, _TASKS[type(request)], self._design, self._file, *own)
 
-    async def _respond(self, request: say.Respond, *_: Any) -> None:
+    async def answer_respond(self, request: say.Respond, *_: Any) -> None:
         """Change the choice of responses; refused if the stage has none of that name."""
         choice = (request.inputs, request.outputs, request.low, request.high)
         found = await self._task_value(self._model, "figures", self._design, self._file, self.stored.text, choice)
@@ -277,82 +291,59 @@ class Session:
         self._choice = choice
         self._push(replace(found, revision=self._computed))
 
-    async def _derive(self, *_: Any) -> say.Said | None:
+    async def answer_derive(self, *_: Any) -> say.Said | None:
         """Run in a separate process, because of its duration; nothing for an outdated text."""
         self._slow = self._slow or Helper(self._died)
         revision = self._computed
-        return await self._task_value_while(lambda: self._computed == revision, self._slow, "slopes")
+        return await self._task_value(self._slow, "slopes", self._design, self._file, wanted=lambda: self._computed == revision)
 
-    async def _travel(self, request: say.Travel, _: int, tell: Tell) -> say.Said:
+    async def answer_travel(self, request: say.Travel, _: int, tell: Tell) -> say.Said:
         """Run in a separate process, which ends with an abort, because of its duration; a new path replaces the running one."""
         self._far = self._far or Helper(self._died)
         self._far.start_anew()
         return await self._task_value(self._far, "travelled", self._design, self._file, request, heard=tell)
 
-    async def _halt(self, *_: Any) -> None:
+    async def answer_halt(self, *_: Any) -> None:
+        """Abort the load path."""
         if self._far is not None:
             self._far.start_anew()
 
-    async def _palette(self, *_: Any) -> say.Said:
+    async def answer_palette(self, *_: Any) -> say.Said:
+        """List the snippets."""
         return say.Snippets(snippets())
 
-    async def _look(self, request: say.Look, page: int, _: Tell) -> None:
+    async def answer_look(self, request: say.Look, page: int, _: Tell) -> None:
+        """Compute the panes that a page shows."""
         self._pages[page] = request.panes
         if self.sound and "figures" in self._last:
             self._start(self._compute(self._computed, self.sound))
 
-    async def _form(self, request: say.JobForm, *_: Any) -> say.Said:
+    async def answer_jobform(self, request: say.JobForm, *_: Any) -> say.Said:
+        """Form of a command."""
         return say.Blank(request.command, await self._task_value(self._quick, "form", request.command))
 
-    async def _specify(self, request: say.Specify, *_: Any) -> say.Said:
+    async def answer_specify(self, request: say.Specify, *_: Any) -> say.Said:
+        """Values and errors of a specification."""
         path = self._in_folder(request.file) if request.file else self.stored.path
         text = request.text or (Stored.read(path).text if request.file else self._specification)
         found = await self._task_value(self._quick, "specify", text, str(path), request.values)
         self._specification = found.text
         return found
 
-    async def _save_specification(self, request: say.SaveSpecification, *_: Any) -> None:
+    async def answer_savespecification(self, request: say.SaveSpecification, *_: Any) -> None:
+        """Write a specification to a new file."""
         path = self._in_folder(request.file)
         if path.exists() and (path == self.stored.path or not request.over):
             raise refuse(path.name, "file exists", "Choose another name")
         replace(self.stored, path=path).write(request.text, over=True)
 
-    async def _run(self, request: say.Run, *_: Any) -> say.Said:
+    async def answer_run(self, request: say.Run, *_: Any) -> say.Said:
+        """Start a job."""
         return say.Done(self.history.revision, self.jobs.start(request, self.history.text))
 
-    async def _cancel(self, request: say.Cancel, *_: Any) -> None:
+    async def answer_cancel(self, request: say.Cancel, *_: Any) -> None:
+        """End a job."""
         self.jobs.cancel(request.job)
-
-    _answers: ClassVar[Mapping[type[Any], Callable[..., Awaitable[say.Said | None]]]] = {
-        **dict.fromkeys(_TASKS, _ask),
-        say.Edit: _edit,
-        say.Set: _set,
-        say.Rest: _set,
-        say.Drag: _drag,
-        say.Respond: _respond,
-        say.Pose: _pose,
-        say.Derive: _derive,
-        say.Travel: _travel,
-        say.Halt: _halt,
-        say.Pin: _pin,
-        say.Compare: _compare,
-        say.Recall: _recall,
-        say.Undo: _undo,
-        say.Redo: _undo,
-        say.Save: _save,
-        say.Browse: _browse,
-        say.Open: _open,
-        say.Reload: _reload,
-        say.Recover: _recover,
-        say.Palette: _palette,
-        say.Insert: _insert,
-        say.Look: _look,
-        say.JobForm: _form,
-        say.Specify: _specify,
-        say.SaveSpecification: _save_specification,
-        say.Run: _run,
-        say.Cancel: _cancel,
-    }
 
     def _take(self, history: History) -> None:
         """Accept another text: it is read, then computed."""
@@ -405,14 +396,17 @@ class Session:
             await self._compute_stages(revision, text)
 
     async def _compute_stages(self, revision: int, text: str) -> None:
-        for stage, called in _STAGES:
+        links = len(self.reading.links) if self.reading else 0
+        for stage, called, assumed in _STAGES:
             work = self._work_of(stage, text)
             if work is None or self._last.get(stage) == (work, revision):
                 self._report(stage, () if work is None else self._failures.get(stage, ()))
                 continue
-            outcome = await self._announced(called, stage, work, lambda: self.sound == text and self._computed == revision)
+            left = expected(links, *self._took.get(stage, (assumed, 30)))
+            outcome = await self._announced(called, left, work, lambda: self.sound == text and self._computed == revision)
             if outcome is None:
                 return
+            self._took[stage] = (outcome.seconds, links)
             self._report(stage, outcome.problems)
             if not outcome.problems:
                 self._last[stage] = work, revision
@@ -458,15 +452,11 @@ class Session:
         """Remove a page."""
         self._pages.pop(page, None)
 
-    async def _announced(self, called: str, stage: str, work: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
+    async def _announced(self, called: str, left: float, work: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
         """Compute a stage; announce a long one at its start, and that it is ready after that, a start or an end of the process."""
-        links = len(self.reading.links) if self.reading else 0
-        left = expected(stage, links, self._took)
         if left > _QUIET:
             self._push(say.Engine("computes", called, left))
         outcome = await self._model.ask(*work, urgency=Urgency.SOON, wanted=wanted)
-        if outcome is not None:
-            self._took[stage] = (outcome.seconds, links)
         told = self.shown[say.Engine]
         if left > _QUIET or (isinstance(told, say.Engine) and told.state in {"starts", "ended"}):
             self._push(say.Engine("ready", "", None))
@@ -524,19 +514,16 @@ class Session:
         """The process for reading texts and for sliders."""
         return self._reader or self._model
 
-    async def _task_value(self, helper: Helper, *call: Any, heard: Callable[[Any], None] = nobody) -> Any:
-        """The value of a task; raises `RefusedError` after a refusal."""
-        outcome = await helper.ask(*call, heard=heard)
+    async def _task_value(
+        self, helper: Helper, *call: Any, wanted: Callable[[], bool] | None = None, heard: Callable[[Any], None] = nobody
+    ) -> Any:
+        """The value of a task, `None` if it is no longer wanted at its turn; raises `RefusedError` after a refusal."""
+        outcome = await helper.ask(*call, wanted=wanted or always, heard=heard)
+        if outcome is None and wanted:
+            return None
         if outcome is None or outcome.problems:
             raise RefusedError(outcome.problems if outcome else ())
         return outcome.value
-
-    async def _task_value_while(self, wanted: Callable[[], bool], helper: Helper, task: str, *arguments: Any) -> Any:
-        """The result of a task on the design; nothing if it is no longer wanted at its turn."""
-        outcome = await helper.ask(task, self._design, self._file, *arguments, wanted=wanted)
-        if outcome is not None and outcome.problems:
-            raise RefusedError(outcome.problems)
-        return outcome and outcome.value
 
     def _is_newest(self, request: Any) -> Callable[[], bool]:
         """Whether no later request of this kind exists."""
@@ -550,19 +537,12 @@ class Session:
         task.add_done_callback(self._work.discard)
 
 
-_FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "warnings": 0.2, "errors": 0.1}
-"""Assumed durations of the steps for a design of thirty links before the first measurement [s] (benchmarks/studio.py)."""
+def expected(links: int, seconds: float, size: int) -> float:
+    """Estimate the duration of a step [s] for a number of links, from its duration for another number `size`.
 
-
-def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> float:
-    """Estimate the duration of a step [s]: its last duration, scaled with the square of the number of links.
-
-    Before the first measurement, the duration for a small design is scaled.
-
-    >>> expected("figures", 300, {}), expected("figures", 10, {"figures": (2.0, 20)})
+    >>> expected(300, 0.1, 30), expected(10, 2.0, 20)
     (10.0, 0.5)
     """
-    seconds, size = took.get(stage, (_FIRST[stage], 30))
     return seconds * (links / max(size, 1)) ** 2
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array
+from flexstage.base.number import Array, first_design
 from flexstage.mechanism.assembly.expand import Assembly, PlacedBody, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.assembly.sight import Sight
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
@@ -73,21 +73,15 @@ def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
     pieces = [piece for body in assembly.bodies.values() for piece in _body(body, joints.get(body.name, []), size)]
     pieces += _solids(assembly.ground, Kind.GROUND, GROUND)
     size = max(size, _span(np.concatenate([piece.skin.points for piece in pieces]))) if pieces else size
-    parts = {id(link.part): part_skin(link.part, _MARKER * size, steps=_steps(link, steps)) for link in assembly.links.values()}
+    parts = {
+        id(link.part): part_skin(link.part, _MARKER * size, steps=1 if is_actuator(link.part) else steps)
+        for link in assembly.links.values()
+    }
     pieces += [piece for name, link in assembly.links.items() for piece in _link(link, parts[id(link.part)], ends[name], size)]
     pieces += [piece for element in assembly.superelements.values() for piece in _superelement(element, size)]
     pieces += [_gauge(name, sight, size) for name, sight in _sights(assembly)]
-    references = {name: _first(body.reference) for name, body in assembly.bodies.items()}
+    references = {name: first_design(np.real(body.reference), 1) for name, body in assembly.bodies.items()}
     return Scene(tuple(pieces), tuple(_labels(assembly, size)), references, size)
-
-
-def _steps(link: PlacedLink, steps: int) -> int:
-    return 1 if is_actuator(link.part) else steps
-
-
-def _first(values: Array) -> Array:
-    values = np.asarray(values)
-    return np.real(values.reshape(-1, values.shape[-1])[0])
 
 
 def _span(points: Array) -> float:
@@ -111,7 +105,7 @@ def _joints(assembly: Assembly, ends: Mapping[str, _Ends]) -> dict[str, list[Arr
             joints.setdefault(body, []).append(end)
     for element in assembly.superelements.values():
         for port in element.ports.values():
-            joints.setdefault(port.body, []).append(_first(port.frame.position))
+            joints.setdefault(port.body, []).append(first_frame(port.frame).position)
     return joints
 
 
@@ -175,7 +169,7 @@ def _superelement(element: PlacedSuperelement, size: float) -> Iterator[DrawnPie
     ports = list(element.ports.values())
     pairs = itertools.combinations(ports, 2) if len(ports) <= 4 else ((ports[0], port) for port in ports[1:])
     for one, other in pairs:
-        for bar in _drawn_bars([(_first(one.frame.position), _first(other.frame.position))], _MARKER * size):
+        for bar in _drawn_bars([(first_frame(one.frame).position, first_frame(other.frame).position)], _MARKER * size):
             yield DrawnPiece(element.name, Kind.HINGE, (one.body, other.body), bar)
 
 
@@ -203,5 +197,5 @@ def _labels(assembly: Assembly, size: float) -> Iterator[Label]:
 
 
 def _point(position: Array) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in _first(position))
+    x, y, z = first_design(np.real(position), 1).tolist()
     return x, y, z

@@ -15,7 +15,7 @@ from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.style import THIRD
 from flexstage.show.page import BlockRow, Folded, Picture, Prose, Section, section
 from flexstage.show.scene.pictures import mode_picture
-from flexstage.show.table import first_design
+from flexstage.show.table import Table, first_design
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.response import response_table
 from flexstage.show.viewer.data import StageData
@@ -75,21 +75,28 @@ def response_section(analysis: Analysis) -> Section | None:
     >>> response_section(analyse(double_triangle(), Model.IDEAL)) is None
     True
     """
-    response, ground = analysis.response, analysis.transmissibility
-    blocks: list[Picture | Folded] = []
-    if response is not None and np.size(response.values):
-        figure = response_figure(response, analysis.modes)
-        drawn = to_svg(figure, "strokes", "Response of the platform to the strokes")
-        caption = "Platform motion per actuator input: each output for the actuator that moves it most. Dotted: the platform's modes."
-        blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
-    if ground is not None and np.size(ground.values):
-        figure = response_figure(ground, analysis.modes)
-        drawn = to_svg(figure, "ground", "Transmissibility from the ground to the platform")
-        caption = "Transmissibility: absolute motion of the platform per absolute motion of the ground."
-        blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
-    known = [item for item in (response, ground) if item is not None and np.size(item.values)]
-    if known:
-        blocks.append(Folded("Gains and peaks", tuple(response_table(item) for item in known)))
+    shown = (
+        (
+            analysis.response,
+            "strokes",
+            "Response of the platform to the strokes",
+            "Platform motion per actuator input: each output for the actuator that moves it most. Dotted: the platform's modes.",
+        ),
+        (
+            analysis.transmissibility,
+            "ground",
+            "Transmissibility from the ground to the platform",
+            "Transmissibility: absolute motion of the platform per absolute motion of the ground.",
+        ),
+    )
+    blocks, tables = list[Picture | Folded](), list[Table]()
+    for response, name, title, caption in shown:
+        if response is not None and np.size(response.values):
+            figure = response_figure(response, analysis.modes)
+            blocks.append(Picture(to_svg(figure, name, title), caption, reading=reading(figure, _mode_spots(analysis.modes))))
+            tables.append(response_table(response))
+    if tables:
+        blocks.append(Folded("Gains and peaks", tuple(tables)))
     return section("Frequency responses", blocks)
 
 

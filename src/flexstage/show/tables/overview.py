@@ -23,7 +23,7 @@ from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
 from flexstage.show.tables.lost_motion import loss_table
 from flexstage.show.tables.requirements import margin_text, rank, value_text, verdict_table, verdict_text
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, MOTION, WRENCH_UNITS
 
 _DIGITS = 4
 _ROWS = 8
@@ -131,20 +131,19 @@ def axis_table(analysis: Analysis) -> Table | None:
     """
     strokes, stiffness, resolution = _strokes(analysis), _stiffness(analysis), _resolution(analysis)
     columns = {
-        "stroke": {name: text for name, (text, _) in strokes.items()},
-        "limited by": {name: cause for name, (_, cause) in strokes.items()},
-        "stiffness": stiffness,
-        "resolution": resolution,
+        Column("stroke"): {name: text for name, (text, _) in strokes.items()},
+        Column("limited by", numeric=False): {name: cause for name, (_, cause) in strokes.items()},
+        Column("stiffness"): stiffness,
+        Column("resolution"): resolution,
     }
-    shown = {head: texts for head, texts in columns.items() if texts}
-    if not shown:
+    heads = [head for head, texts in columns.items() if texts]
+    if not heads:
         return None
     rows = [
-        (Cell(name, Mark.STRONG), *(Cell(texts[name]) if name in texts else Cell(NO_VALUE, Mark.FAINT) for texts in shown.values()))
+        (Cell(name, Mark.STRONG), *(Cell(columns[head][name]) if name in columns[head] else Cell(NO_VALUE, Mark.FAINT) for head in heads))
         for name in COMPONENTS
-        if any(name in texts for texts in shown.values())
+        if any(name in texts for texts in columns.values())
     ]
-    heads = [Column(head, numeric=head != "limited by") for head in shown]
     return make_table("Platform", ["along", *heads], rows, notes=[_axis_note(analysis)])
 
 
@@ -161,20 +160,17 @@ def _axis_note(analysis: Analysis) -> str:
 
 def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     """Stroke in both directions and its limit, by coordinate."""
-    if analysis.workspace is not None:
-        single = analysis.workspace.corrected or analysis.workspace.single_axis
-        names, values, causes = single.coordinates, first_design(single.symmetric, 1), single.limiting
-    elif analysis.force_workspace is not None:
-        names, values, causes = (
-            analysis.force_workspace.coordinates,
-            first_design(analysis.force_workspace.held, 1),
-            analysis.force_workspace.limited_by,
-        )
+    reach, forced = analysis.workspace, analysis.force_workspace
+    if reach is not None:
+        single = reach.corrected or reach.single_axis
+        rows = single.coordinates, single.symmetric, single.limiting
+    elif forced is not None:
+        rows = forced.coordinates, forced.held, forced.limited_by
     else:
         return {}
     return {
-        name: (NO_VALUE if np.isnan(value) else f"+-{_shown(value, name, TWIST_UNITS)}", cause or "no limit specified")
-        for name, value, cause in zip(names, np.real(values), causes, strict=True)
+        name: (NO_VALUE if np.isnan(value) else f"+-{_shown(value, name)}", cause or "no limit specified")
+        for name, value, cause in zip(rows[0], np.real(first_design(rows[1], 1)), rows[2], strict=True)
     }
 
 
@@ -183,12 +179,8 @@ def _stiffness(analysis: Analysis) -> Mapping[str, str]:
     if analysis.statics is None:
         return {}
     compliance = np.diagonal(np.real(first_design(analysis.statics.compliance.values, 2)))
-    units = [f"{top}/{bottom}" for top, bottom in zip(WRENCH_UNITS, TWIST_UNITS, strict=True)]
-    return {
-        name: format_value(1.0 / float(each), unit, _DIGITS)
-        for name, each, unit in zip(COMPONENTS, compliance, units, strict=True)
-        if each > 0.0
-    }
+    rows = zip(COMPONENTS, compliance, WRENCH_UNITS, strict=True)
+    return {name: format_value(1.0 / float(each), f"{unit}/{MOTION.unit(name)}", _DIGITS) for name, each, unit in rows if each > 0.0}
 
 
 def _resolution(analysis: Analysis) -> Mapping[str, str]:
@@ -196,11 +188,11 @@ def _resolution(analysis: Analysis) -> Mapping[str, str]:
     if found is None:
         return {}
     worst = np.real(first_design(found.worst, 1))
-    return {name: _shown(value, name, TWIST_UNITS) for name, value in zip(COMPONENTS, worst, strict=True) if value > 0.0}
+    return {name: _shown(value, name) for name, value in zip(COMPONENTS, worst, strict=True) if value > 0.0}
 
 
-def _shown(value: float, name: str, units: tuple[str, ...]) -> str:
-    return format_value(float(value), units[COMPONENTS.index(name)], _DIGITS)
+def _shown(value: float, name: str) -> str:
+    return format_value(float(value), MOTION.unit(name), _DIGITS)
 
 
 def _platform_modes(modes: Modes) -> Table | None:

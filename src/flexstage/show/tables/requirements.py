@@ -28,9 +28,8 @@ def verdict_table(verdicts: Sequence[Verdict], *, explained: bool = False) -> Ta
     rows = [_row(verdict) for verdict in verdicts]
     heads: list[Column | str] = ["requirement", "demand", Column("value"), Column("margin"), "verdict"]
     if explained:  # the value next to the name
-        rows = [
-            (name, value, demand, *rest, Cell(meaning(each))) for each, (name, demand, value, *rest) in zip(verdicts, rows, strict=True)
-        ]
+        meanings = [Cell(each.requirement.kind.meaning) for each in verdicts]
+        rows = [(name, value, demand, *rest, text) for (name, demand, value, *rest), text in zip(rows, meanings, strict=True)]
         heads = [heads[0], heads[2], heads[1], *heads[3:], "meaning"]
     notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
     return make_table("Requirements", heads, rows, notes=notes)
@@ -45,17 +44,6 @@ def is_met(verdict: Verdict) -> bool:
     True
     """
     return bool(np.all(verdict.passed))
-
-
-def meaning(verdict: Verdict) -> str:
-    """Return the meaning of a requirement's key.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.assessment.judge import judge
-    >>> meaning(judge(double_triangle())[6])
-    'n-th natural frequency of the platform'
-    """
-    return verdict.requirement.kind.meaning
 
 
 def verdict_text(verdicts: Sequence[Verdict]) -> str:
@@ -84,18 +72,7 @@ def rank(verdict: Verdict) -> tuple[bool, bool, float]:
     (True, False)
     """
     known = verdict.value is not None
-    return is_met(verdict), known and verdict.requirement.limit == 0.0, first_margin(verdict) if known else -np.inf
-
-
-def first_margin(verdict: Verdict) -> float:
-    """Return the relative margin of a requirement (first design of a batch).
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.assessment.judge import judge
-    >>> round(first_margin(judge(double_triangle())[6]), 4)
-    0.0601
-    """
-    return single(verdict.margin)
+    return is_met(verdict), known and verdict.requirement.limit == 0.0, single(verdict.margin) if known else -np.inf
 
 
 def value_text(verdict: Verdict) -> str:
@@ -135,7 +112,7 @@ def margin_text(verdict: Verdict) -> str:
     """
     if verdict.value is None:
         return "-"
-    margin = first_margin(verdict)
+    margin = single(verdict.margin)
     if verdict.requirement.limit == 0.0:
         return quantity_text(margin, verdict.requirement.quantity)
     return f"{'+' if margin >= 0.0 else ''}{percent(margin, 3)}"

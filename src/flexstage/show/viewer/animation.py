@@ -22,6 +22,7 @@ from flexstage.models.nonlinear.lines import Line, Motions, centre_lines, critic
 from flexstage.models.nonlinear.paths.critical_load import Critical
 from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.show.display import DisplayUnit, display_unit_of, format_value, to_typography
+from flexstage.show.viewer.bend import interpolate
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.show.viewer.motions import Curve, Group, Motion, PathMotion
 from flexstage.spatial.rotation import exponential, logarithm
@@ -30,7 +31,7 @@ NODES = 12
 """Points along a link at which its position is computed."""
 _BYTES = 400_000
 """Size limit for the poses of a path in a page [bytes]."""
-_MODES = 6
+_MODES, _LOWEST = 6, 12
 _MILLIMETRES = DisplayUnit("mm", 1e3)
 _OWN = {"strain": DisplayUnit("um/m", 1e6), "lost": DisplayUnit("%", 100.0)}
 
@@ -77,11 +78,11 @@ def _buckling_motions(still: StageData, case: CaseFactor, found: Critical, numbe
     yield from _about(still, found.state, critical_motion(found), [(name, label, to_typography(f"{case.load}, {case.place}"), None)])
 
 
-def modes_at_data(mechanism: Mechanism, there: OperatingPoint, found: Modes, said: str, *, count: int = 12) -> StageData:
-    """Return viewer data of a stage with its `count` lowest modes about an operating point, which the text `said` describes."""
+def modes_at_data(mechanism: Mechanism, there: OperatingPoint, found: Modes, said: str) -> StageData:
+    """Return viewer data of a stage with its lowest modes about an operating point, which the text `said` describes."""
     still = still_data(mechanism)
-    moved = mode_motions(there.state, found.shapes[:, :count], there.locked)
-    return replace(still, motions=tuple(_about(still, there.state, moved, _labels(found.frequencies[:count], said))))
+    moved = mode_motions(there.state, found.shapes[:, :_LOWEST], there.locked)
+    return replace(still, motions=tuple(_about(still, there.state, moved, _labels(found.frequencies[:_LOWEST], said))))
 
 
 def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligned) -> Motion:
@@ -91,7 +92,8 @@ def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligne
     frames = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).round().astype(int))]
     curves = curves_of(found.along)
     numbers = {thing.name: number for number, thing in enumerate(still.things)}
-    course = PathMotion(frames, poses[frames], None, curves, _parts_beyond(found, numbers), limits(found))
+    over = ([numbers[name] for name, *_ in _over(found, point) if name in numbers] for point in range(len(found.along.values)))
+    course = PathMotion(frames, poses[frames], None, curves, tuple(tuple(sorted(each)) for each in over), limits(found))
     return Motion(Group.PATH, drive, f"{drive}  {curves[0].span}", np.zeros((0, 6)), course=course)
 
 
@@ -121,30 +123,21 @@ def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
     return tuple(to_typography("; ".join(_words(found, point))) for point in range(len(found.along.values)))
 
 
-def _over(found: Stroke | Misaligned, point: int) -> list[int]:
-    """The flexures with a stress above their material's limit."""
+def _over(found: Stroke | Misaligned, point: int) -> list[tuple[str, Any, Any]]:
+    """The flexures with a stress above their material's limit, their stress and this limit."""
     strained = found.strained
-    return [place for place, limit in enumerate(strained.limit) if strained.stress[point, place] > limit]
+    return [each for each in zip(strained.names, strained.stress[point], strained.limit, strict=True) if each[1] > each[2]]
 
 
 def _words(found: Stroke | Misaligned, point: int) -> Iterator[str]:
-    strained = found.strained
-    for place in _over(found, point):
-        stress, limit = (format_value(float(each), "Pa", 4) for each in (strained.stress[point, place], strained.limit[place]))
-        yield f"{strained.names[place]}: stress {stress}, limit {limit}"
+    for name, *values in _over(found, point):
+        stress, limit = (format_value(float(each), "Pa", 4) for each in values)
+        yield f"{name}: stress {stress}, limit {limit}"
     loose = found.along.values[point, found.along.columns.index("unstable")]
     if np.isnan(loose):
         yield "no equilibrium found"
     elif loose > 0:
         yield "the free stage is unstable"
-
-
-def _parts_beyond(found: Stroke | Misaligned, numbers: Mapping[str, int]) -> tuple[tuple[int, ...], ...]:
-    names = found.strained.names
-    return tuple(
-        tuple(sorted(numbers[names[place]] for place in _over(found, point) if names[place] in numbers))
-        for point in range(len(found.along.values))
-    )
 
 
 def _modes_there(still: StageData, path: LoadPath) -> Iterator[Motion]:
@@ -261,12 +254,8 @@ def _piece(carrier: _Carrier, line: Line | None, at: _At, turn: Array) -> Array:
 
 def _resampled(line: Line, shares: Array) -> tuple[Array, Array]:
     """Positions and rotation vectors (b, NODES, 3) of a centre line; its slope is that of the sections."""
-    vectors = logarithm(line.turn)
-    cut = [
-        np.stack([np.stack([np.interp(shares, line.shares, row) for row in case.T], axis=-1) for case in each])
-        for each in (line.place, vectors)
-    ]
-    return cut[0], cut[1]
+    place, vectors = (np.stack([interpolate(shares, line.shares, case) for case in each]) for each in (line.place, logarithm(line.turn)))
+    return place, vectors
 
 
 def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[str, Line], moved: Mapping[str, Array]) -> Array:
@@ -274,8 +263,7 @@ def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[
     shares = np.linspace(0.0, 1.0, NODES)
     known = moved.get(carrier.name)
     if known is not None:
-        where = lines[carrier.name].shares
-        return np.stack([np.interp(shares, where, row) for row in known.T], axis=-1)
+        return interpolate(shares, lines[carrier.name].shares, known)
     references = _references(still)
     ends = [
         np.concatenate([bodies[body, :3] + np.cross(bodies[body, 3:], end - references[body]), bodies[body, 3:]])

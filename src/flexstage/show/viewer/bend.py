@@ -29,7 +29,16 @@ class Bend:
 
     def at(self, shares: Array) -> Array:
         """Interpolate the values (k, 5) at fractions (k,) of the length."""
-        return np.stack([np.interp(shares, self.shares, column) for column in self.values.T], axis=-1)
+        return interpolate(shares, self.shares, self.values)
+
+
+def interpolate(shares: Array, places: Array, values: Array) -> Array:
+    """Interpolate rows of values (n, k), known at n places, linearly at other fractions of a length.
+
+    >>> interpolate(np.array([0.5]), np.array([0.0, 1.0]), np.array([[0.0, 2.0], [1.0, 4.0]])).tolist()
+    [[0.5, 3.0]]
+    """
+    return np.stack([np.interp(shares, places, column) for column in values.T], axis=-1)
 
 
 def bend_of(part: Part | None) -> Bend:
