@@ -16,7 +16,7 @@ from flexstage.base.number import Array, first_design, stack
 from flexstage.base.session import SESSION
 from flexstage.parts.mass import tensor
 from flexstage.parts.matrix_file import LARGEST_DENSE, MatrixLike, digest_of, read_matrices
-from flexstage.parts.superelement import FileUnits, Port, Superelement
+from flexstage.parts.superelement import FileUnits, Superelement
 from flexstage.spatial.frame import Frame, axes, mirror, twist_transform
 
 SYMMETRIC = 1e-6
@@ -59,17 +59,18 @@ def condense(part: Superelement, where: str = "superelement") -> Condensed:
 
     Raises `DesignError` with all errors; their addresses begin with `where`.
     """
-    result = _condensed(part)
-    if isinstance(result, DesignError):
-        raise DesignError(_at(where, finding) for finding in result.findings)
-    return result
+    try:
+        return _condensed(part)
+    except DesignError as error:
+        raise DesignError(_at(where, finding) for finding in error.findings) from None
 
 
 def superelement_findings(part: Superelement, where: str) -> Iterator[Finding]:
     """Return the errors of a superelement. The addresses of the errors begin with `where` (`parts.frame.ports.left.row`)."""
-    result = _condensed(part)
-    if isinstance(result, DesignError):
-        yield from (_at(where, finding) for finding in result.findings)
+    try:
+        condense(part, where)
+    except DesignError as error:
+        yield from error.findings
 
 
 def _at(where: str, finding: Finding) -> Finding:
@@ -80,54 +81,28 @@ def _at(where: str, finding: Finding) -> Finding:
 
 
 @SESSION.keep(16)
-def _condensed(part: Superelement) -> Condensed | DesignError:
-    try:
-        return _reduce(part, *read_matrices(part))
-    except DesignError as error:
-        return error
-
-
-@dataclass(frozen=True, eq=False)
-class _Split:
-    """Matrices with the ports' coordinates first, in the file's units; `basis` (n, 6 p) are the static constraint modes."""
-
-    stiffness: MatrixLike
-    inertia: MatrixLike
-    lost: tuple[MatrixLike, ...]
-    ports: int
-    inner: MatrixLike
-    basis: Array
-
-    @property
-    def at_ports(self) -> Array:
-        """Statically condensed stiffness (6 p, 6 p) at the ports."""
-        return _symmetrise(_dense(self.basis.T @ (self.stiffness @ self.basis)))
-
-    @property
-    def carried(self) -> Array:
-        """Statically condensed mass (6 p, 6 p) at the ports."""
-        return _symmetrise(_dense(self.basis.T @ (self.inertia @ self.basis)))
-
-
-def _reduce(part: Superelement, *matrices: MatrixLike) -> Condensed:
+def _condensed(part: Superelement) -> Condensed:
+    matrices = read_matrices(part)
     named: dict[str, MatrixLike] = dict(zip(("stiffness matrix", "mass matrix", "damping matrix"), matrices, strict=False))
     require(_shape_findings(part, named))
     require(finding for name, matrix in named.items() for finding in _entry_findings(name, matrix))
-    split = _split(part, *(_symmetrise(each) for each in matrices))
+    stiffness, inertia, *lost = _ports_first(part, matrices)
+    count = 6 * len(part.ports)
+    inner = stiffness[count:, count:]
+    basis = np.vstack([np.eye(count), -_solve_within(inner, _dense(stiffness[count:, :count]))])  # static constraint modes
+    in_file, carried = (_projected(each, basis) for each in (stiffness, inertia))
     scale, energy = _in_si(part)
-    at_ports, carried = (energy * scale * each * scale[:, None] for each in (split.at_ports, split.carried))
+    at_ports, carried = (energy * scale * each * scale[:, None] for each in (in_file, carried))
     frames = _frames(part)
-    error, findings = _rigid_findings(part, at_ports, split.at_ports, frames)
+    error, findings = _rigid_findings(part, at_ports, in_file, frames)
     require(findings)
-    motion = _rigid(frames)
+    motion = np.vstack([twist_transform(frame, np.zeros(3)) for frame in frames])  # of the ports, by the part's twist at its origin
     mass, centre, moments, told = _mass_findings(part, motion.T @ carried @ motion, _span(frames))
-    require([*told, *_negative_findings(split.inertia)])
-    squares, modes = _modes(part, split)
-    whole = np.hstack([split.basis, modes])
+    require([*told, *_negative_findings(inertia)])
+    squares, shapes = _modes(part, inner, inertia[count:, count:])
+    whole = np.hstack([basis, np.vstack([np.zeros((count, len(squares))), shapes])])
     size = np.concatenate([scale, np.full(len(squares), 1.0 / np.sqrt(energy))])
-    reduced, *lost = (
-        energy * size * _symmetrise(_dense(whole.T @ (each @ whole))) * size[:, None] for each in (split.inertia, *split.lost)
-    )
+    reduced, *lost = (energy * size * _projected(each, whole) * size[:, None] for each in (inertia, *lost))
     require(finding for each in lost for finding in _loss_findings(each, motion))
     return Condensed(at_ports[6:, 6:], squares, reduced, lost[0][6:, 6:] if lost else None, mass, centre, moments, error)
 
@@ -192,14 +167,15 @@ def _entry_findings(name: str, matrix: MatrixLike) -> Iterator[Finding]:
         yield Finding(name, what, "Export the whole matrix, not only a triangle, of a model without rotors or contact")
 
 
-def _split(part: Superelement, *matrices: MatrixLike) -> _Split:
+def _ports_first(part: Superelement, matrices: tuple[MatrixLike, ...]) -> list[MatrixLike]:
+    """Symmetric matrices with the ports' coordinates first, in the file's units."""
     ports = np.concatenate([np.arange(part.ports[name].row - 1, part.ports[name].row + 5) for name in part.order])
     order = np.concatenate([ports, np.setdiff1d(np.arange(matrices[0].shape[0]), ports)])
-    stiffness, inertia, *lost = (each[order][:, order] for each in matrices)
-    count = len(ports)
-    inner = stiffness[count:, count:]
-    follow = -_solve_within(inner, _dense(stiffness[count:, :count]))
-    return _Split(stiffness, inertia, tuple(lost), count, inner, np.vstack([np.eye(count), follow]))
+    return [_symmetrise(each)[order][:, order] for each in matrices]
+
+
+def _projected(matrix: MatrixLike, basis: Array) -> Array:
+    return _symmetrise(_dense(basis.T @ (matrix @ basis)))
 
 
 def _solve_within(inner: MatrixLike, force: Array) -> Array:
@@ -233,16 +209,8 @@ def _in_si(part: Superelement, units: FileUnits | None = None) -> tuple[Array, f
 
 
 def _frames(part: Superelement) -> list[Frame]:
-    return [_frame(part.ports[name]) for name in part.order]
-
-
-def _frame(port: Port) -> Frame:
-    return Frame(np.real(first_design(axes(port.along, port.up), 2)), np.real(first_design(stack(port.at), 1)))
-
-
-def _rigid(frames: list[Frame]) -> Array:
-    """Twists (6 p, 6) of the ports in rigid motion, by the part's twist at its origin."""
-    return np.vstack([twist_transform(frame, np.zeros(3)) for frame in frames])
+    ports = (part.ports[name] for name in part.order)
+    return [Frame(np.real(first_design(axes(port.along, port.up), 2)), np.real(first_design(stack(port.at), 1))) for port in ports]
 
 
 def _span(frames: list[Frame]) -> float:
@@ -367,17 +335,16 @@ def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
         yield Finding("mass matrix", what, "Export the consistent or the lumped mass matrix, with all its digits")
 
 
-def _modes(part: Superelement, split: _Split) -> tuple[Array, Array]:
+def _modes(part: Superelement, inner: MatrixLike, mass: MatrixLike) -> tuple[Array, Array]:
     """Squares (m,) of the angular frequencies of the retained fixed-interface modes, and their mass-normalised shapes (n, m)."""
-    size = split.inner.shape[0]
-    mass = split.inertia[split.ports :, split.ports :]
+    size = inner.shape[0]
     if not size or part.modes == 0 or not np.any(mass.diagonal()):
-        return np.zeros(0), np.zeros((split.ports + size, 0))
+        return np.zeros(0), np.zeros((size, 0))
     most = np.inf if part.below is None else float(2.0 * np.pi * np.real(np.ravel(part.below)[0])) ** 2
-    if scipy.sparse.issparse(split.inner):
-        squares, shapes = _lowest(part, split.inner, mass)
+    if scipy.sparse.issparse(inner):
+        squares, shapes = _lowest(part, inner, mass)
     else:
-        inverses, shapes = scipy.linalg.eigh(mass, split.inner)
+        inverses, shapes = scipy.linalg.eigh(mass, inner)
         kept = inverses > _MASSLESS * inverses[-1]
         squares, shapes = 1.0 / inverses[kept][::-1], (shapes[:, kept] / np.sqrt(inverses[kept]))[:, ::-1]
     few = (squares < most)[: part.modes]
@@ -385,7 +352,7 @@ def _modes(part: Superelement, split: _Split) -> tuple[Array, Array]:
     if len(squares) > MOST_MODES:
         what = f"too many internal coordinates (got {len(squares)}, expected {MOST_MODES} at most)"
         raise refuse("modes", what, 'Limit the number of modes (e.g. modes = 20) or their frequency (e.g. below = "2 kHz")')
-    return squares, np.vstack([np.zeros((split.ports, len(squares))), shapes])
+    return squares, shapes
 
 
 def _lowest(part: Superelement, inner: MatrixLike, mass: MatrixLike) -> tuple[Array, Array]:
@@ -414,14 +381,8 @@ def superelement(part: Superelement) -> Superelement:
 
     Use this function for parts created in Python from new files. A part in a design file contains its digest already.
     """
-    whole = replace(
-        part,
-        **{
-            key: str(Path(path).resolve())
-            for key in ("file", "stiffness_file", "mass_file", "damping_file")
-            if (path := getattr(part, key))
-        },
-    )
+    paths = {key: getattr(part, key) for key in ("file", "stiffness_file", "mass_file", "damping_file")}
+    whole = replace(part, **{key: str(Path(path).resolve()) for key, path in paths.items() if path})
     versioned = replace(whole, sha256=digest_of(whole.files))
     condense(versioned)
     return versioned

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, reduce
-from itertools import product
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -122,6 +122,7 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
 def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """Inclusion and exclusion: pairs count -1, triples +1, and so on."""
     scale = max((float(np.max(np.abs(each.placed.position)) + np.max(np.real(each.solid.sides))) for each in seen), default=0.0)
+    tiny = _FLUSH * scale**3
     near = [(one, other) for one, other in _near(seen) if not _is_apart(seen[one], seen[other])]
     problems: list[Finding] = []
     groups: dict[tuple[int, ...], Moments] = {}
@@ -133,8 +134,8 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         elif np.any(np.real(both[0].density - np.asarray(both[1].density))):
             holes = [each for each in seen if each.solid.subtract and each.solid.material in {drawn.solid.material for drawn in both}]
             left = result.volume - sum(moments.volume for hole in holes if (moments := _region((*both, hole))) is not None)
-            problems += _mixtures(*both, float(np.max(np.real(left)))) if np.any(np.real(left) > _FLUSH * scale**3) else ()
-        elif np.any(there := np.where(np.abs(result.volume) > _FLUSH * scale**3, 1.0, 0.0)):
+            problems += _mixtures(*both, float(np.max(np.real(left)))) if np.any(np.real(left) > tiny) else ()
+        elif np.any(there := np.abs(result.volume) > tiny):
             groups[one, other] = result.times(there)
     require(problems)
     pairs, told = set(groups), 0
@@ -151,9 +152,10 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         ]
         groups = {}
         for group in wider:
-            result = _region([seen[number] for number in group])
-            require(_refusals([seen[number] for number in group]) if result is None else ())
-            if result is not None and np.any(there := np.where(np.abs(result.volume) > _FLUSH * scale**3, 1.0, 0.0)):
+            members = [seen[number] for number in group]
+            result = _region(members)
+            require(_refusals(members) if result is None else ())
+            if result is not None and np.any(there := np.abs(result.volume) > tiny):
                 groups[group] = result.times(there)
 
 
@@ -174,22 +176,14 @@ def _spread(value: Array, own: int, shape: tuple[int, ...]) -> Array:
 
 def _near(seen: Sequence[Drawn]) -> Iterator[tuple[int, int]]:
     """Pairs whose boxes overlap in a design."""
-    if len(seen) < 2:
-        return
     shape = _shape(seen)
-    boxes = [Boxes(*(_spread(*part, shape if part[0].ndim > part[1] or part[1] == 1 else (1,)) for part in _box(each))) for each in seen]
-    flat = [
-        Boxes(*(each.reshape(-1, *each.shape[-own:]) for each, own in ((box.turns, 2), (box.centres, 1), (box.halves, 1)))) for box in boxes
-    ]
-    centres = np.array([box.centres for box in flat])
-    reach = np.array([(np.abs(box.turns) @ box.halves[..., None])[..., 0] for box in flat])
-    flush = _FLUSH * np.array([np.linalg.norm(box.halves, axis=-1) for box in flat])
-    for one in range(len(seen) - 1):
-        apart = np.abs(centres[one + 1 :] - centres[one]) - reach[one + 1 :] - reach[one]
-        close = np.all(apart < -(flush[one + 1 :] + flush[one])[..., None], axis=-1)
-        for other in one + 1 + np.flatnonzero(np.any(close, axis=-1)):
-            if np.any(separations(flat[one], flat[other]) < -flush[one] - flush[other]):
-                yield one, int(other)
+    boxes = [Boxes(*(_spread(value, own, shape).reshape(-1, *value.shape[-own:]) for value, own in _box(each))) for each in seen]
+    flush = [_FLUSH * np.linalg.norm(box.halves, axis=-1) for box in boxes]
+    reach = [np.einsum("kij,kj->ki", np.abs(box.turns), box.halves) for box in boxes]
+    for one, other in combinations(range(len(seen)), 2):
+        close = np.all(np.abs(boxes[other].centres - boxes[one].centres) < reach[one] + reach[other], axis=-1)
+        if np.any(close) and np.any(separations(boxes[one], boxes[other]) < -flush[one] - flush[other]):
+            yield one, other
 
 
 def _is_apart(first: Drawn, second: Drawn) -> bool:
