@@ -280,6 +280,7 @@ def expand(mechanism: Mechanism) -> Assembly:
     return assembly
 
 
+@SESSION.keep(2)
 def lay_out(mechanism: Mechanism) -> Assembly:
     """Expand a description as `expand` does; mass properties are computed only on first use.
 
@@ -287,31 +288,11 @@ def lay_out(mechanism: Mechanism) -> Assembly:
     >>> len(lay_out(double_triangle()).bodies)
     19
     """
-    return _assembly(IdentityKey(mechanism))
-
-
-class IdentityKey:
-    """Cache key that identifies a description by object identity, which is faster than a digest."""
-
-    def __init__(self, mechanism: Mechanism) -> None:
-        self.mechanism = mechanism
-
-    def __hash__(self) -> int:
-        return id(self.mechanism)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, IdentityKey) and self.mechanism is other.mechanism
-
-
-@SESSION.keep(2)
-def _assembly(key: IdentityKey) -> Assembly:
-    """The assembly, cached by description."""
-    mechanism = key.mechanism
     require([*place_findings(mechanism), *unknown_names(mechanism), *compound_findings(mechanism)])
     placed = tuple(copies(mechanism))
     described = tuple(_links(mechanism, placed))
     elements = {link.name: link for link in described if isinstance(link, PlacedSuperelement)}
-    compositions = _compositions(described)
+    compositions = {id(link.part): link.part.composition for link in described if isinstance(link.part, Compound)}
     wholes = (whole for whole in described if isinstance(whole, PlacedLink))
     links = {link.name: link for whole in wholes for link in _members(mechanism, whole, compositions.get(id(whole.part)))}
     drawn = (*_bodies(mechanism, placed), *_inner_bodies(mechanism, described, compositions))
@@ -322,8 +303,8 @@ def _assembly(key: IdentityKey) -> Assembly:
         for item in drawn
         if item.body.of is None
     }
-    require(_unknown_bodies(bodies, joined, {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}))
-    require(_unknown_bodies(bodies, (), {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
+    gauges = {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}
+    require(_unknown_bodies(bodies, joined, gauges | {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
     resting = lent.get(GROUND, ())
     _ = [item.own for item in resting]  # their mass is unused, but an unknown one is refused
     ground = _placed_solids(resting)
@@ -564,12 +545,6 @@ def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
         if (link.start is not None or link.end is not None) and link.part in compounds:
             place = "Specify the origin (at) and the direction (along)"
             yield Finding(f"{where}.from", f"part {link.part} is a compound: only its members have two ends", place)
-
-
-def _compositions(links: Iterable[PlacedLink | PlacedSuperelement]) -> dict[int, Composition]:
-    """Members of compounds by identity of the part, shared by instances."""
-    parts = {id(link.part): link.part for link in links}
-    return {key: part.composition for key, part in parts.items() if isinstance(part, Compound)}
 
 
 def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition | None) -> Iterator[PlacedLink]:
