@@ -137,7 +137,7 @@ def test_a_deflection_is_that_of_the_beam_column(mass):
 
 def test_a_bound_of_stiffness_is_twice_that_of_frequencies():
     """A frequency goes with the root of a stiffness."""
-    said = LoadEffect(0.004, "", "", None).text
+    said = LoadEffect(0.004, "", "").text
     assert "no stiffness by more than 0.4 %, and no frequency by more than 0.2 %" in said
 
 

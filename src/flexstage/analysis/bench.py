@@ -172,10 +172,11 @@ class StageResults:
     @cached_property
     def under_load(self) -> StageResults:
         """Results of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else this object."""
-        if self.loaded is None or self.loaded.model is None:
+        point = None if self.loaded is None else self.loaded.point
+        if point is None:
             return self
-        other = self.with_model(self.loaded.model)
-        other.__dict__ |= {"links": self.loaded.links, "kinematics": self.kinematics}
+        other = self.with_model(point.linear)
+        other.__dict__ |= {"links": point.links, "kinematics": self.kinematics}
         return other
 
     def with_model(self, model: LinearModel) -> StageResults:

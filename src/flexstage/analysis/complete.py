@@ -157,7 +157,8 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
     verdicts = judge(mechanism, bench)
     kinematics = ideal(mechanism)
     linear, loading = read(mechanism, model), load_effect(mechanism) if model is Model.LUMPED else None
-    weighed, linked = (linear, linear) if loading is None or loading.model is None else (loading.model, loading.links)
+    point = None if loading is None else loading.point
+    weighed, linked = (linear, linear) if point is None else (point.linear, point.links)
     attempt = Attempts()
     lost = attempt.of_ground("lost_motion", linked, _RIGID, lambda known: lost_motion(kinematics, known))
     seen = (PLATFORM, *kinematics.gauges)

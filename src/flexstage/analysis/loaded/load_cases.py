@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from flexstage.analysis.loaded.course import course
-from flexstage.analysis.loaded.operating_point import Conditions
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.loaded.stability import buckling_clause
 from flexstage.analysis.loaded.standing import drawn, load_factors
 from flexstage.analysis.workspace.force_workspace import input_limits
@@ -260,7 +260,7 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     >>> round(case_critical(stage, LoadCase("push", "at rest", {"platform.fx": -1e3}, gravity=0.0)).factor, 3)
     11.063
     """
-    point = Conditions(model, case.whole, case.at, case.locked, case.gravity)
+    point = OperatingPoint(model, case.whole, case.at, case.locked, case.gravity)
     known, hold = _brought(point)
     stays = {**case.stays, **point.driven}
     weight, stated = case.shares
@@ -278,11 +278,11 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     )
 
 
-def _brought(point: Conditions) -> tuple[State | None, dict[str, float]]:
+def _brought(point: OperatingPoint) -> tuple[State | None, dict[str, float]]:
     """Stable equilibrium of a case under its full load, and the coordinates fixed there."""
     if not point.at and not point.fixed:
         return None, {}
-    there, hold = point.reach(1.0), point.held(1.0)
+    there, hold = point.state, point.targets(1.0)
     if not bool(there.converged):
         raise refuse("stage", "no equilibrium found", "Reduce the displacement or load")
     if not point.at or int(unstable_motions(there, locked=point.fixed)):

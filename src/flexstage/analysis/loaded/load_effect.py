@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -25,12 +24,14 @@ from flexstage.parts.part import Part
 from flexstage.spatial.frame import COMPONENTS
 
 if TYPE_CHECKING:
+    from flexstage.analysis.loaded import operating_point
     from flexstage.models.nonlinear import equilibrium, linearise
     from flexstage.models.nonlinear import stage as nonlinear
     from flexstage.models.nonlinear.paths import critical_load
 else:
     critical_load = LazyModule("flexstage.models.nonlinear.paths.critical_load")
     equilibrium = LazyModule("flexstage.models.nonlinear.equilibrium")
+    operating_point = LazyModule("flexstage.analysis.loaded.operating_point")
     linearise = LazyModule("flexstage.models.nonlinear.linearise")
     nonlinear = LazyModule("flexstage.models.nonlinear.stage")
 
@@ -46,37 +47,34 @@ class LoadEffect:
     """Effect of the permanent load (weight, payloads, preloads, specified forces, bent or warm flexures) on a stage.
 
     `change` is the largest relative change of the platform stiffness along an axis or of one of the first frequencies; `figure` names the
-    changed quantity. If `figure` is empty, `change` is an upper bound for the change of any stiffness, from linearised buckling. `model` is
-    the model linearised about the loaded state if the change is significant (1 % or more), else None. `links` is the same model with
-    flexures that follow their ends quasi-statically, for lost motion and drift. `state` is the loaded state. If the change is unknown,
-    `why` is the reason.
+    changed quantity. If `figure` is empty, `change` is an upper bound for the change of any stiffness, from linearised buckling. `point` is
+    the loaded stage if the change is significant (1 % or more), else None. If the change is unknown, `why` is the reason.
     """
 
     change: Annotated[float, RATIO]
     figure: str
     why: str
-    model: Annotated[LinearModel | None, INNER]
-    state: Annotated[equilibrium.State | None, INNER] = None
+    point: Annotated[operating_point.OperatingPoint | None, INNER] = None
     cause: str = "weight, payloads and forces"
 
-    @cached_property
-    def links(self) -> LinearModel | None:
-        """Model linearised about the loaded state; flexures have no inner coordinates and follow their ends quasi-statically."""
-        return None if self.model is None or self.state is None else linearise.linearise(self.state, inner=False)
+    @property
+    def model(self) -> LinearModel | None:
+        """Model linearised about the loaded state; `None` if the change is not significant."""
+        return None if self.point is None else self.point.linear
 
     def deflection(self, point: str) -> Array | None:
         """Return the motion (6,) [m, rad] of a point from the unloaded to the loaded state; `None` if the change is not significant."""
-        if self.state is None:
+        if self.point is None:
             return None
-        unloaded = equilibrium.equilibrium(self.state.model, weight=0.0, stated=0.0)
+        unloaded = equilibrium.equilibrium(self.point.model, weight=0.0, stated=0.0)
         equilibrium.require_equilibrium(unloaded)
-        return self.state.twist(point) - unloaded.twist(point)
+        return self.point.rest.twist(point) - unloaded.twist(point)
 
     @property
     def text(self) -> str:
         """Sentence on the effect; empty for stages without permanent load.
 
-        >>> LoadEffect(0.004, "frequency 1", "", None).text
+        >>> LoadEffect(0.004, "frequency 1", "").text
         'Weight, payloads and forces change stiffness and frequencies by up to 0.4 % (frequency 1): results are for the unloaded stage.'
         """
         cause, size = f"{self.cause[0].upper()}{self.cause[1:]}", f"{100.0 * abs(self.change):.2g} %"
@@ -122,23 +120,22 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     *others, last = "weight", "payloads", "forces", *causes
     cause = f"{', '.join(others)} and {last}"
     if bound < SIGNIFICANT and not bent:
-        return LoadEffect(bound, "", "", None)
+        return LoadEffect(bound, "", "")
     still = standing(mechanism)
     if is_large(mechanism, still):
-        return LoadEffect(
-            bound, "", f"the model has too many degrees of freedom for a loaded state ({len(still.coordinates):,})", None, cause=cause
-        )
+        why = f"the model has too many degrees of freedom for a loaded state ({len(still.coordinates):,})"
+        return LoadEffect(bound, "", why, cause=cause)
     near = _compare(still, prestress(mechanism, still))
     if abs(near.change) < SIGNIFICANT and not bent:
         return near
     try:
         return replace(_nonlinear_effect(mechanism), cause=cause)
     except DesignError as error:
-        return LoadEffect(bound, "", "; ".join(str(each).rstrip(".") for each in error.findings), None, cause=cause)
+        return LoadEffect(bound, "", "; ".join(str(each).rstrip(".") for each in error.findings), cause=cause)
 
 
 def loaded_lumped_model(mechanism: Mechanism) -> LinearModel:
-    """Return the lumped model or, if the permanent load is significant, `LoadEffect.links` (linearised about the loaded state).
+    """Return the lumped model or, if the permanent load is significant, `OperatingPoint.links` of the loaded stage.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> "geometric" in loaded_lumped_model(parallelogram()).stiffness
@@ -146,7 +143,7 @@ def loaded_lumped_model(mechanism: Mechanism) -> LinearModel:
     """
     drawn = standing(mechanism)
     result = None if drawn.designs else load_effect(mechanism)
-    return drawn if result is None or result.links is None else result.links
+    return drawn if result is None or result.point is None else result.point.links
 
 
 def _bound(result: Stability) -> float:
@@ -170,13 +167,12 @@ def _straight(mechanism: Mechanism) -> Mechanism:
 
 
 def _nonlinear_effect(mechanism: Mechanism) -> LoadEffect:
-    state = equilibrium.equilibrium(nonlinear.nonlinear(mechanism))
-    unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
-    equilibrium.require_equilibrium(state)
-    if int(critical_load.unstable_motions(state)):
+    point = operating_point.OperatingPoint(nonlinear.nonlinear(mechanism))
+    if int(critical_load.unstable_motions(point.rest)):
         raise refuse("stage", "no stable equilibrium found under weight and loads", "Run flexstage buckle to find the critical load")
-    result = _compare(linearise.linearise(unloaded), linearise.linearise(state))
-    return replace(result, state=state if result.model is not None else None)
+    unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
+    result = _compare(linearise.linearise(unloaded), point.linear)
+    return replace(result, point=point) if abs(result.change) >= SIGNIFICANT else result
 
 
 def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:
@@ -184,8 +180,7 @@ def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:
     before, after = dict(_figures(still)), dict(_figures(about))
     changes = {name: after[name] / before[name] - 1.0 for name in before if name in after and before[name] > 0.0}
     largest = max(changes, key=lambda name: round(abs(changes[name]), 9))
-    change = changes[largest]
-    return LoadEffect(change, largest, "", about if abs(change) >= SIGNIFICANT else None)
+    return LoadEffect(changes[largest], largest, "")
 
 
 def _figures(model: LinearModel) -> Iterator[tuple[str, float]]:

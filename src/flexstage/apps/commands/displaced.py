@@ -16,7 +16,7 @@ from flexstage.analysis.loaded.course import DrivePath, course, drive_quantity
 from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, buckling_factors, load_cases
 from flexstage.analysis.loaded.misalign import misalign as misaligned
 from flexstage.analysis.loaded.misalign import misalignments
-from flexstage.analysis.loaded.operating_point import require_consistent
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.loaded.stroke import PostBuckling
 from flexstage.analysis.loaded.stroke import stroke as over_stroke
 from flexstage.apps.words import BranchSide
@@ -221,7 +221,7 @@ def _case(mechanism: Mechanism, place: OperatingPointOptions, scaled: Sequence[s
     """The load case of the options: the scaled load, else the weight, and the operating point."""
     model = nonlinear(mechanism)
     grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, place.load or ()), place.brought(model)
-    require_consistent(model, there, {**grows, **stays}, place.locked)
+    require(OperatingPoint(model, {**grows, **stays}, there, place.locked).contradictions())
     text, where = (
         (", ".join(scaled) or WEIGHT),
         ", ".join([*(place.at or ()), *(place.load or ()), *(f"{name} fixed" for name in place.locked)]),

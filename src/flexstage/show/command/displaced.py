@@ -93,8 +93,7 @@ class OperatingPointOptions:
 class CommandStage:
     """The stage of a command: at an `operating_point`, or in the undeformed configuration with the `effect` of its permanent load.
 
-    `model` is the kind of model. `linear` is the linear model about the operating point. `links` is the corresponding model for lost motion
-    and drift.
+    `model` is the kind of model. `point` is the operating point, or the loaded stage if its permanent load is significant.
     """
 
     mechanism: Mechanism
@@ -103,17 +102,19 @@ class CommandStage:
     effect: LoadEffect | None = None
 
     @property
+    def point(self) -> OperatingPoint | None:
+        """Operating point about which models are linearised; `None` for the undeformed stage."""
+        return self.operating_point if self.effect is None else self.effect.point
+
+    @property
     def linear(self) -> LinearModel:
-        """Linear model about the operating point or, if there is none, of the stage with the effect of a significant permanent load."""
-        return elastic_model(self.mechanism, self.model, loaded=True) if self.operating_point is None else self.operating_point.linear
+        """Linear model about the point, or of the undeformed stage."""
+        return elastic_model(self.mechanism, self.model) if self.point is None else self.point.linear
 
     @property
     def links(self) -> LinearModel:
         """Linear model for lost motion and drift. At an operating point, its flexures follow their ends quasi-statically."""
-        if self.operating_point is not None:
-            return self.operating_point.links
-        loaded = None if self.effect is None else self.effect.links
-        return elastic_model(self.mechanism, self.model) if loaded is None else loaded
+        return elastic_model(self.mechanism, self.model) if self.point is None else self.point.links
 
     def body(self, result: Any) -> Any:
         """Return the JSON body of a result, together with the operating point or the effect of the permanent load."""
