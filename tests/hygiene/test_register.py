@@ -1,7 +1,10 @@
 """Registers: what other packages offer is known, and what is wrong with it is told."""
 
+from importlib.metadata import entry_points
+
 import pytest
 
+from flexstage.base import register
 from flexstage.base.finding import DesignError
 from flexstage.base.register import Register
 
@@ -16,6 +19,7 @@ def offers(tmp_path, monkeypatch):
         lines = ("[flexstage.trial]", "both = math:pi", "own = math:pi", f"{name} = math:tau", f"bad {name} = nowhere:it")
         (told / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(register, "_installed", entry_points)  # those found before are kept
     return Register("flexstage.trial", {"own": 1.0})
 
 

@@ -6,13 +6,12 @@ import functools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from flexstage.base.finding import refuse
 
 PREFIX = "flexstage."
-GROUPS = tuple(f"{PREFIX}{name}" for name in ("parts", "laws", "shapes", "gauges", "measures", "formats", "controllers", "amplifiers"))
-"""Entry-point groups for kinds of other packages, one group per register."""
+"""First letters of the names of all entry-point groups for kinds of other packages, one group per register."""
 Entry = TypeVar("Entry")
 
 
@@ -62,27 +61,22 @@ def origin(module: str) -> str:
     return "" if module.startswith(PREFIX) else _origin(module.partition(".")[0])
 
 
-def offered_packages() -> tuple[str, ...]:
-    """Return names and versions of all installed packages with entries, sorted."""
-    return tuple(sorted({_distribution(offer) for group in GROUPS for offer in _offered(group)}))
-
-
 @functools.cache
 def _origin(package: str) -> str:
-    offers = [offer for group in GROUPS for offer in _offered(group) if offer.module.partition(".")[0] == package]
+    groups = (group for group in _installed().groups if group.startswith(PREFIX))
+    offers = [offer for group in groups for offer in _offered(group) if offer.module.partition(".")[0] == package]
     return ", ".join(sorted({_distribution(offer) for offer in offers}))
 
 
 @functools.cache
 def _offered(group: str) -> tuple[EntryPoint, ...]:
-    return _known_offers()[group] if group in GROUPS else tuple(entry_points(group=group))
+    return tuple(_installed().select(group=group))
 
 
 @functools.cache
-def _known_offers() -> Mapping[str, tuple[EntryPoint, ...]]:
-    """Entry points of all registers, cached: every installed package has a separate file."""
-    result = entry_points()
-    return {group: tuple(result.select(group=group)) for group in GROUPS}
+def _installed() -> Any:
+    """Entry points of all packages, cached: every installed package has a separate file."""
+    return entry_points()
 
 
 def _distribution(offer: EntryPoint) -> str:
