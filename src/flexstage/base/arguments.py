@@ -262,7 +262,7 @@ def _choice(kind: type[Enum], words: Mapping[str, Enum], value: Any) -> Any:
 def _word(node: Any, value: Any) -> Any:
     """A choice of a node: a member, or its spelling."""
     words = node.words
-    if isinstance(value, str) and type(value) is str and value in words:
+    if type(value) is str and value in words:
         return words[value]
     if value in words.values():
         return value
@@ -309,8 +309,6 @@ def _real(demand: Demand, value: Any) -> Any:
 
 def _number(demand: Demand, value: Any) -> Any:
     """A number or an array of them, real or complex."""
-    if type(value) is float and value - value == 0.0:
-        return value
     if isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim):
         return _array(demand, value)
     if isinstance(value, complex | np.complexfloating):
@@ -363,19 +361,14 @@ def _row(rules: list[Rule], value: Any) -> Any:
     """One value per rule."""
     if not isinstance(value, tuple | list) or len(value) != len(rules):
         raise MismatchError(value, f"{len(rules)} values", "Use a tuple of them")
-    return _same_or(tuple, value, [_inside(rule, str(place), each) for place, (rule, each) in enumerate(zip(rules, value, strict=True))])
+    return tuple(_inside(rule, str(place), each) for place, (rule, each) in enumerate(zip(rules, value, strict=True)))
 
 
 def _items(kind: type, rule: Rule, value: Any) -> Any:
     """Any number of values."""
     if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable) or isinstance(value, np.ndarray):
         raise MismatchError(value, "several values", "Use a tuple or a list of them")
-    return _same_or(kind, value, [_inside(rule, str(place), each) for place, each in enumerate(value)])
-
-
-def _same_or(kind: type, value: Any, items: list[Any]) -> Any:
-    """The same object if its items are unchanged, to spare the garbage collector."""
-    return value if type(value) is kind and all(map(operator.is_, value, items)) else kind(items)
+    return kind(_inside(rule, str(place), each) for place, each in enumerate(value))
 
 
 def _table(rule: Rule, value: Any) -> Any:
@@ -384,7 +377,7 @@ def _table(rule: Rule, value: Any) -> Any:
 
 
 def _frozen_table(rule: Rule, value: Any) -> Any:
-    return value if type(value) is Table and value.rule is rule else Table(_items_by_name(rule, value), rule)
+    return Table(_items_by_name(rule, value))
 
 
 def _items_by_name(rule: Rule, value: Any) -> dict[str, Any]:

@@ -25,12 +25,10 @@ class Table(Mapping[str, Any]):
     1
     """
 
-    __slots__ = ("_items", "rule")
+    __slots__ = ("_items",)
 
-    def __init__(self, items: Mapping[str, Any], rule: object = None) -> None:
+    def __init__(self, items: Mapping[str, Any]) -> None:
         self._items = {name: freeze(value) for name, value in items.items()}
-        self.rule = rule
-        """Rule that all values are known to satisfy; copies of a description need not check it again."""
 
     def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
         return Table, (self._items,)
@@ -89,9 +87,6 @@ def stack(values: Any) -> Array:
     if all(isinstance(value, (float, int, complex)) for value in values):
         return np.array(values)
     inner = [stack(value) for value in values]
-    if all(item.shape == inner[0].shape for item in inner):
-        depth = _depth(values)
-        return np.stack(inner, axis=-depth)
     depth = _depth(values)
     tails = [item.shape[item.ndim - depth + 1 :] if depth > 1 else () for item in inner]
     batch = np.broadcast_shapes(*(item.shape[: item.ndim - depth + 1] for item in inner))
