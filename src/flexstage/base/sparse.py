@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy
@@ -13,8 +13,42 @@ import scipy
 from flexstage.base.number import Array
 
 
+class _Operator:
+    """Real matrix in place of a dense array: products are arrays, other numpy functions use the dense matrix."""
+
+    __array_priority__ = 100.0
+    __array_ufunc__ = None
+    ndim = 2
+
+    @property
+    def real(self) -> Self:
+        """The matrix itself, which is real."""
+        return self
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:  # noqa: FBT001 (numpy's protocol)
+        return np.asarray(self._dense(), dtype=dtype, copy=copy)
+
+    def __getitem__(self, index: Any) -> Any:
+        """Rows `[..., rows, :]` in the form of `_rows`; any other part dense."""
+        if index == ():
+            return self
+        if isinstance(index, tuple) and len(index) == 3 and index[0] is ... and isinstance(index[2], slice) and index[2] == slice(None):
+            return self._rows(index[1])
+        return np.asarray(self)[index]
+
+    def swapaxes(self, first: int, second: int) -> Array:
+        """Return the dense transpose."""
+        return np.swapaxes(np.asarray(self), first, second)
+
+    def _dense(self) -> Array:
+        raise NotImplementedError
+
+    def _rows(self, rows: Any) -> Any:
+        raise NotImplementedError
+
+
 @dataclass(frozen=True, eq=False)
-class Sparse:
+class Sparse(_Operator):
     """Real matrix (r, n) that is zero except for `columns` (c,) with `values` (r, c). Values of repeated columns are added.
 
     A `Sparse` can replace a dense operator (r, n). Products with arrays are arrays; other numpy functions use the dense matrix.
@@ -29,10 +63,6 @@ class Sparse:
     values: Array
     size: int
 
-    __array_priority__ = 100.0
-    __array_ufunc__ = None
-    ndim = 2
-
     @property
     def shape(self) -> tuple[int, int]:
         """Shape (r, n)."""
@@ -43,13 +73,11 @@ class Sparse:
         """Type of the values."""
         return self.values.dtype
 
-    @property
-    def real(self) -> Sparse:
-        """The matrix itself, which is real."""
-        return self
+    def _dense(self) -> Array:
+        return as_csr([self], self.size).toarray()
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:  # noqa: FBT001 (numpy's protocol)
-        return np.asarray(as_csr([self], self.size).toarray(), dtype=dtype, copy=copy)
+    def _rows(self, rows: Any) -> Sparse:
+        return Sparse(self.columns, self.values[..., rows, :], self.size)
 
     def __matmul__(self, motion: Array) -> Array:
         return self.values @ motion[..., self.columns, :]
@@ -58,25 +86,13 @@ class Sparse:
         return Sparse(self.columns, law @ self.values, self.size)
 
     def __sub__(self, other: Sparse) -> Sparse:
-        return Sparse(np.concatenate([self.columns, other.columns]), np.concatenate([self.values, -other.values], axis=1), self.size)
+        return self + Sparse(other.columns, -other.values, other.size)
 
     def __add__(self, other: Sparse) -> Sparse:
         return Sparse(np.concatenate([self.columns, other.columns]), np.concatenate([self.values, other.values], axis=1), self.size)
 
     def __rmul__(self, factor: Array) -> Sparse:
         return Sparse(self.columns, np.real(factor) * self.values, self.size)
-
-    def __getitem__(self, index: Any) -> Any:
-        """Rows `[..., rows, :]` as a sparse matrix; any other part dense."""
-        if index == ():
-            return self
-        if isinstance(index, tuple) and len(index) == 3 and index[0] is ... and isinstance(index[2], slice) and index[2] == slice(None):
-            return Sparse(self.columns, self.values[..., index[1], :], self.size)
-        return np.asarray(self)[index]
-
-    def swapaxes(self, first: int, second: int) -> Array:
-        """Return the dense transpose."""
-        return np.swapaxes(np.asarray(self), first, second)
 
 
 def few(matrix: Array | Sparse) -> Sparse:
@@ -136,7 +152,7 @@ def block_diagonal(blocks: Iterable[Array]) -> Any:
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class Rows(_Operator):
     """Matrix (p, n) with a row for each of many outputs, stored by its nonzero entries. Selected rows are returned as dense arrays.
 
     >>> import numpy as np
@@ -146,10 +162,6 @@ class Rows:
     """
 
     entries: Any
-
-    __array_priority__ = 100.0
-    __array_ufunc__ = None
-    ndim = 2
 
     @staticmethod
     def of(rows: Iterable[Sparse], size: int) -> Rows:
@@ -176,25 +188,11 @@ class Rows:
         """Type of the entries."""
         return self.entries.dtype
 
-    @property
-    def real(self) -> Rows:
-        """The matrix itself, which is real."""
-        return self
+    def _dense(self) -> Array:
+        return self.entries.toarray()
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:  # noqa: FBT001 (numpy's protocol)
-        return np.asarray(self.entries.toarray(), dtype=dtype, copy=copy)
+    def _rows(self, rows: Any) -> Array:
+        return self.entries[rows].toarray()
 
     def __matmul__(self, motion: Array) -> Array:
         return self.entries @ motion
-
-    def __getitem__(self, index: Any) -> Any:
-        """Rows `[..., rows, :]`, or any other part, dense."""
-        if index == ():
-            return self
-        if isinstance(index, tuple) and len(index) == 3 and index[0] is ... and isinstance(index[2], slice) and index[2] == slice(None):
-            return self.entries[index[1]].toarray()
-        return np.asarray(self)[index]
-
-    def swapaxes(self, first: int, second: int) -> Array:
-        """Return the dense transpose."""
-        return np.swapaxes(np.asarray(self), first, second)
