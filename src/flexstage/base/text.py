@@ -21,9 +21,4 @@ def printable(text: str, keep: str = "") -> str:
     >>> printable("a\x1b[31m\u202e b\u00e9\n"), printable("two\nlines", keep="\n")
     ('a\\x1b[31m\\u202e bé\\n', 'two\nlines')
     """
-    rest = text
-    for sign in keep:
-        rest = rest.replace(sign, "")
-    if rest.isprintable():  # fast path for most texts
-        return text
     return _STEERING.sub(lambda result: result[0] if result[0] in keep else result[0].encode("unicode_escape").decode("ascii"), text)

@@ -97,9 +97,7 @@ def digest(value: Any, *, physics: bool = False) -> str:
     """
     if isinstance(value, Description):
         return _own(value, physics=physics).hex()
-    pieces: list[bytes] = []
-    _feed(pieces, value, physics=physics)
-    return hashlib.sha256(b"".join(pieces)).hexdigest()
+    return hashlib.sha256(_content(value, physics=physics)).hexdigest()
 
 
 def _own(value: Description, *, physics: bool) -> bytes:
@@ -109,28 +107,19 @@ def _own(value: Description, *, physics: bool) -> bytes:
         pieces = [b"D" + type(value).__name__.encode() + origin(type(value).__module__).encode()]
         for name, piece, always in _counted_fields(type(value), physics=physics):
             if always or getattr(value, name):
-                pieces.append(piece)
-                _feed(pieces, getattr(value, name), physics=physics)
+                pieces += piece, _content(getattr(value, name), physics=physics)
         known[physics] = hashlib.sha256(b"".join(pieces)).digest()
     return known[physics]
 
 
-def _feed(pieces: list[bytes], value: Any, *, physics: bool) -> None:
+def _content(value: Any, *, physics: bool) -> bytes:
     if isinstance(value, Description):
-        pieces.append(b"D" + _own(value, physics=physics))
-    elif isinstance(value, Mapping):
-        pieces.append(b"M")
-        for key in sorted(value):
-            pieces.append(_scalar(key))
-            _feed(pieces, value[key], physics=physics)
-        pieces.append(b"m")
-    elif isinstance(value, (tuple, list)):
-        pieces.append(b"T")
-        for item in value:
-            _feed(pieces, item, physics=physics)
-        pieces.append(b"t")
-    else:
-        pieces.append(_scalar(value))
+        return b"D" + _own(value, physics=physics)
+    if isinstance(value, Mapping):
+        return b"M" + b"".join(_scalar(key) + _content(value[key], physics=physics) for key in sorted(value)) + b"m"
+    if isinstance(value, (tuple, list)):
+        return b"T" + b"".join(_content(item, physics=physics) for item in value) + b"t"
+    return _scalar(value)
 
 
 def _scalar(value: Any) -> bytes:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import is_dataclass
 from enum import Enum
@@ -18,6 +19,8 @@ import numpy as np
 from flexstage.base.record import walk
 
 Document: TypeAlias = dict[str, Any]
+_UNUSUAL = re.compile(r"[^ -~\n]")
+"""Characters that may be unprintable."""
 
 
 def plain(result: Any) -> Document:
@@ -45,12 +48,7 @@ def as_text(result: Any) -> str:
     }
     """
     text = json.dumps(plain(result), indent=1, ensure_ascii=False, allow_nan=False)
-    return "\n".join(line if line.isprintable() else "".join(map(_escape, line)) for line in text.split("\n"))
-
-
-def _escape(letter: str) -> str:
-    """A character in JSON; unprintable ones as escapes."""
-    return letter if letter.isprintable() else json.dumps(letter)[1:-1]
+    return _UNUSUAL.sub(lambda found: found[0] if found[0].isprintable() else json.dumps(found[0])[1:-1], text)
 
 
 def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:

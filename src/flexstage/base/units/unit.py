@@ -110,17 +110,14 @@ def split_unit(text: str) -> tuple[str, str]:
     return number, text.strip()[len(number) :].strip() or "1"
 
 
+@functools.lru_cache(maxsize=512)
 def quantity_of_dimension(dimension: Dimension, unit: str = "") -> Quantity:
     """Return the first known quantity of a dimension, displayed in `unit`; for an unknown dimension, a quantity named by its SI unit.
 
     >>> quantity_of_dimension(dimension_of("mm"), "mm").noun, quantity_of_dimension(dimension_of("mm^3")).si
     ('a length', 'm^3')
     """
-    return _quantity(dimension.powers, unit)
-
-
-@functools.lru_cache(maxsize=512)
-def _quantity(powers: tuple[tuple[str, Fraction], ...], unit: str) -> Quantity:
+    powers = dimension.powers
     known = (each for each in vars(quantities).values() if isinstance(each, Quantity) and each.si != "mixed")
     result = next((each for each in known if dimension_of(each.si).powers == powers), None)
     si = _si_text(powers)
