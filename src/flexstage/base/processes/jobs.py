@@ -13,7 +13,6 @@ import os
 import pickle
 import queue
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
@@ -32,7 +31,8 @@ _KEPT = {"hugetlb": 1, "mmap_threshold": 2**25, "trim_threshold": 2**28}
 _MEMORY = {"GLIBC_TUNABLES": ":".join(f"glibc.malloc.{name}={value}" for name, value in _KEPT.items())}
 """GNU C library: large pages for large matrices, and up to a quarter of a gigabyte of freed memory is kept for reuse (sparse fronts)."""
 _MAIN = "from flexstage.base.processes.jobs import main; main()"
-_LENGTH = struct.Struct("<Q")
+_END = (EOFError, pickle.UnpicklingError)
+"""Errors at the end of a stream, and within the last message of a process that died."""
 
 
 class Word(Enum):
@@ -109,13 +109,13 @@ class Worker:
     def call(self, *arguments: Any) -> Any:
         """Call the function and return its result, or raise its exception; the worker's queue must have no other reader.
 
-        Raises `EOFError` if the process crashed or was ended. After an `EOFError` or an interrupt, the process has ended.
+        Raises `EOFError` with the exit code if the process crashed or was ended. After this error or an interrupt, the process has ended.
         """
         try:
             self.ask(*arguments)
             _, word, value = self.heard.get()
             if word is Word.ENDED:
-                raise EOFError
+                raise EOFError(value)
         except BaseException:
             self.end()
             raise
@@ -152,9 +152,9 @@ class Worker:
             _write(_as_pipe(self.process.stdin), data)
 
     def _listen(self) -> None:
-        with _as_pipe(self.process.stdout) as answers, contextlib.suppress(EOFError):
+        with _as_pipe(self.process.stdout) as answers, contextlib.suppress(*_END):
             while True:
-                self.heard.put((self, *pickle.loads(_read_frame(answers))))  # noqa: S301 (written by this module)
+                self.heard.put((self, *pickle.loads(pickle.load(answers))))  # noqa: S301 (written by this module)
         self.heard.put((self, Word.ENDED, self.process.wait()))
 
 
@@ -232,26 +232,15 @@ def _serve(line: Line) -> None:
 
 def _listen(requested: queue.SimpleQueue[bytes]) -> None:
     """Forward messages until standard input closes; then end this process."""
-    with contextlib.suppress(EOFError):
+    with contextlib.suppress(*_END):
         while True:
-            requested.put(_read_frame(sys.stdin.buffer))
+            requested.put(pickle.load(sys.stdin.buffer))  # noqa: S301 (bytes)
     os._exit(0)
 
 
-def _read_frame(stream: IO[bytes]) -> bytes:
-    return _read_exactly(stream, _LENGTH.unpack(_read_exactly(stream, _LENGTH.size))[0])
-
-
-def _read_exactly(stream: IO[bytes], size: int) -> bytes:
-    result = stream.read(size)
-    if len(result) < size:
-        raise EOFError
-    return result
-
-
 def _write(stream: IO[bytes], data: bytes) -> None:
-    stream.write(_LENGTH.pack(len(data)))
-    stream.write(data)
+    """Send a message; the inner pickle is read by the function's thread."""
+    pickle.dump(data, stream)
     stream.flush()
 
 

@@ -15,14 +15,15 @@ import signal
 import stat
 import threading
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 import scipy
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
 from flexstage.base.processes.jobs import Line, Worker, limit_memory, limit_processor
 from flexstage.base.processes.memory import gigabytes, require_memory
@@ -192,18 +193,14 @@ class Child:
         self._owner = 0
         self._lock = threading.Lock()
 
-    def ask(self, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
-        """Return the result of `read` for a file. Raises the errors of `Worker.call`; after a failure, the next request starts a worker."""
+    def ask(self, *arguments: Any) -> Any:
+        """Return the result of `_answer`. Raises the errors of `Worker.call`; after a failure, the next request starts a worker."""
         with self._lock:
             known = self._worker
             if known is None or self._owner != os.getpid() or known.process.poll() is not None:
                 known = self._worker = Worker(_answer)
                 self._owner = os.getpid()
-            return known.call(read, path, arguments, seconds, memory)
-
-    def code(self) -> int:
-        """Exit code of the last worker."""
-        return self._worker.process.returncode if self._worker is not None else 0
+            return known.call(*arguments)
 
     def end(self) -> None:
         """End the worker."""
@@ -220,13 +217,9 @@ def _ask(read: Callable[..., Any], requested: Path, size: int, *arguments: Any) 
     """Answer of the worker about a file, at most `size` bytes of numbers; raises `DesignError` if unreadable."""
     path, seconds = str(requested), PATIENCE + _SLOW * size
     try:
-        answer = CHILD.ask(read, requested.absolute(), arguments, seconds, MEMORY + _COPIES * size)
-    except EOFError:
-        raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it again") from None
-    if isinstance(answer, _WrongError):
-        where, what, advice = answer.args
-        raise refuse(f"{path}: {where}" if where else path, what, advice)
-    return answer
+        return CHILD.ask(partial(read, requested.absolute(), *arguments), path, seconds, MEMORY + _COPIES * size)
+    except EOFError as error:
+        raise refuse(path, f"it is damaged: {_how_it_ended(error.args[0], seconds)}", "Copy or export it again") from None
 
 
 def _how_it_ended(code: int, seconds: float) -> str:
@@ -239,38 +232,34 @@ def _how_it_ended(code: int, seconds: float) -> str:
 # --- worker process ---
 
 
-class _WrongError(Exception):
-    """Error: position in the file, problem, and hint."""
-
-
-def _answer(_line: Line, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
-    """Answer to a request, or its error: damaged files raise exceptions of all kinds."""
+def _answer(_line: Line, read: partial[Any], shown: str, seconds: float, memory: float) -> Any:
+    """Answer to a request about a file, which errors call `shown`: damaged files raise exceptions of all kinds."""
     limit_processor(seconds)
     limit_memory(memory)
     try:
-        return read(path, *arguments)
+        return read()
+    except DesignError as error:  # at a place in the file
+        raise DesignError(replace(each, where=f"{shown}: {each.where}") for each in error.findings) from None
     except MemoryError:
-        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export the file again, or in parts")
+        raise refuse(shown, f"reading it takes more than {gigabytes(memory)} of memory", "Export the file again, or in parts") from None
     except Exception as error:  # noqa: BLE001
-        return _answer_to_error(error, path, is_mat=read is _mat)
+        raise refuse(shown, *_reason(error, read.args[0], is_mat=read.func is _mat)) from None
 
 
 def _error_text(error: Exception) -> str:
     return " ".join(str(getattr(error, "strerror", None) or error or type(error).__name__).split())[:300]
 
 
-def _answer_to_error(error: Exception, path: Path, *, is_mat: bool) -> _WrongError:
-    if isinstance(error, _WrongError):
-        return error
+def _reason(error: Exception, path: Path, *, is_mat: bool) -> tuple[str, str]:
     said = _error_text(error)
     if is_mat:
         size = path.stat().st_size
         advice = "The file is truncated or damaged: copy or save it again (MAT files of version 5 cannot be read in part)"
-        return _WrongError("", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
+        return (f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
     if "truncated file" in said:
         numbers = said.partition("truncated file: ")[2].rstrip(")") or said
-        return _WrongError("", f"truncated file ({numbers})", "HDF5 files cannot be read in part: copy or export the file again")
-    return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it again")
+        return (f"truncated file ({numbers})", "HDF5 files cannot be read in part: copy or export the file again")
+    return (f"it cannot be read as HDF5 ({said})", "Check the file, or export it again")
 
 
 _ELSEWHERE = "its data are in another file", "Copy all data into this file: other files are not read"
@@ -312,7 +301,7 @@ def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
             raise ValueError("a name in the file is not a string")
         link = group.get(key, getlink=True)
         if isinstance(link, h5py.ExternalLink):
-            raise _WrongError(f"{name}/{key}".lstrip("/"), *_ELSEWHERE)
+            raise refuse(f"{name}/{key}".lstrip("/"), *_ELSEWHERE)
         if isinstance(link, h5py.HardLink):
             yield key, group[key]
 
@@ -320,7 +309,7 @@ def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
 def _array(file: Any, name: str, data: Any) -> HdfArray:
     """An array without its numbers. Refuses external data."""
     if data.external or data.is_virtual:
-        raise _WrongError(name, *_ELSEWHERE)
+        raise refuse(name, *_ELSEWHERE)
     kind, columns = _kind(data)
     short = math.prod(data.shape) <= _TEXTS
     texts = tuple(_texts(data[()])) if kind == "t" and short else ()
