@@ -163,9 +163,9 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tu
     Those without a mesh are left out. Raises `DesignError` beyond memory or time, or if a part is too thin.
     """
     alike: dict[tuple[str, Fineness], list[Reduce]] = {}
-    for job in jobs:
-        if isinstance(job, Reduce):
-            alike.setdefault((job.kin, replace(job.reduction.fineness, order=1)), []).append(job)
+    reductions = [job for job in jobs if isinstance(job, Reduce)]
+    for job in reductions:
+        alike.setdefault((job.kin, replace(job.reduction.fineness, order=1)), []).append(job)
     require(chain.from_iterable(thin_findings(same[0].component.pieces, same[0].reduction.fineness) for same in alike.values()))
     known: dict[str, ReductionWork] = {}
 
@@ -181,11 +181,10 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tu
         work_all([MeasureWork(tuple(each)) for each in alike.values()], take, ways.limits, show, ways.pool)
     except DesignError as error:
         failures = error.findings
-    able = [job for job in jobs if job.key in known or not isinstance(job, Reduce)]
-    measured = [replace(job, measured=known[job.key]) if isinstance(job, Reduce) else job for job in able]
+    measured = [replace(job, measured=known[job.key]) for job in reductions if job.key in known]
     memory = available() if ways.limits.memory is None else ways.limits.memory
-    require(each for job in measured if isinstance(job, Reduce) for each in job.excess(memory, ways.limits.seconds))
-    return measured, failures
+    require(each for job in measured for each in job.excess(memory, ways.limits.seconds))
+    return [*(job for job in jobs if not isinstance(job, Reduce)), *measured], failures
 
 
 def announce(jobs: Sequence[StoredJob], lanes: int, cached: int) -> str:

@@ -172,7 +172,6 @@ def _locked(folder: Path) -> Generator[None]:
         raise refuse(os.fspath(folder.parent), what, "Choose a file in another folder") from None
     with lock:
         try:
-            remove_leftovers(folder)
             yield
         finally:
             remove_leftovers(folder)

@@ -192,7 +192,7 @@ def _damage_findings(file: Hdf) -> Iterator[Finding]:
     if wrong:
         yield Finding(os.fspath(file.path), f"its {', '.join(wrong)} cannot be read", advice)
         return
-    planned, size = (int(float(str(attributes[key]))) for key in ("planned", "piece"))
+    planned, size = (_count(file, key) for key in ("planned", "piece"))
     shapes = {name: (planned, len(_labels(file, name, "names"))) for name in ("variables", "responses")}
     for name, shape in {**shapes, "computed": (-(-planned // size),), "failed": (planned,)}.items():
         found = file.arrays.get(name)
