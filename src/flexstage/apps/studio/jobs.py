@@ -9,7 +9,7 @@ import os
 import secrets
 import signal
 import sys
-from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -24,14 +24,19 @@ from flexstage.base.storage.store import make_temporary_folder, write
 
 _WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx", "--hardware", "--example")
 _STUDIES, _DESIGN = ("sweep", "optimise"), "design"
+_MISSING = {
+    **dict.fromkeys(_STUDIES, ("study missing", "Write a study, see docs/studies.md")),
+    _DESIGN: ("specification missing", "Fill in the form"),
+}
+"""Errors of commands without their text."""
 _ENDS = {"optimise": "done; the optimum is pinned in the comparison of figures"}
 _LINES = 12
 """Number of stored last output lines of a job."""
 _PATIENCE = 3.0
 """Time limit for the cleanup of an ended job [s]."""
 _MOST = 50
-_LONGEST = 2**20
-"""Largest number of stored characters of a line of output; the design of an answer is one line."""
+_LONGEST = 2**27
+"""Largest number of bytes of a line of output; the design of an answer is one line."""
 
 
 @dataclass
@@ -77,10 +82,8 @@ class Jobs:
         running = [each for each in self._jobs.values() if each.state.state in ("waits", "runs")]
         if len(running) >= _MOST:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
-        if request.command in _STUDIES and request.study is None:
-            raise refuse(request.command, "study missing", "Write a study, see docs/studies.md")
-        if request.command == _DESIGN and request.study is None:
-            raise refuse(request.command, "specification missing", "Fill in the form")
+        if request.study is None and request.command in _MISSING:
+            raise refuse(request.command, *_MISSING[request.command])
         if (request.record or request.command == "identify") and not (request.record and self._is_file(request.record)):
             raise refuse(request.command, "record not found", "Name a file, relative to the folder of the design")
         for option in request.options:
@@ -117,10 +120,9 @@ class Jobs:
         if job is None:
             raise refuse(f"job {number}", "unknown job", "Choose a job of the list")
         if job.state.state in ("waits", "runs"):
-            job.state = replace(job.state, state="cancelled", text="cancelled")
+            self._set(job, state="cancelled", text="cancelled")
             if job.process is not None:
                 self._end(job.process)
-            self._push()
 
     async def close(self) -> None:
         """End all jobs, and remove their files."""
@@ -129,8 +131,8 @@ class Jobs:
         if self._work:
             await asyncio.wait(self._work, timeout=_PATIENCE)
         for each in self._jobs.values():
-            if each.process is not None and each.process.returncode is None:
-                each.process.kill()
+            if each.process is not None:
+                _kill(each.process)
             self._remove(each)
         if self._folder is not None:
             import shutil
@@ -144,9 +146,9 @@ class Jobs:
             try:
                 await self._follow(job)
             except DesignError as error:
-                self._set(job, replace(job.state, state="failed", text=str(error)))
+                self._set(job, state="failed", text=str(error))
             except OSError as error:
-                self._set(job, replace(job.state, state="failed", text=f"the system cannot start a process: {error}"))
+                self._set(job, state="failed", text=f"the system cannot start a process: {error}")
             finally:
                 self._remove(job)
 
@@ -156,9 +158,10 @@ class Jobs:
             self._folder = make_temporary_folder()
         report, document = (self._folder / f"{job.number}.{ending}" for ending in ("html", "json"))
         arguments = [*self._arguments(job), *job.request.options, "--report", str(report), "--json", str(document)]
-        self._set(job, replace(job.state, state="runs", text="starts"))
+        self._set(job, state="runs", text="starts")
         job.process = process = await asyncio.create_subprocess_exec(
             *(sys.executable, *self.program, job.request.command, *arguments),
+            limit=_LONGEST,
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.STDOUT,
@@ -166,8 +169,8 @@ class Jobs:
             start_new_session=True,
         )
         if process.stdout is not None:
-            async for line in _lines(process.stdout):
-                self._hear(job, line)
+            async for line in process.stdout:
+                self._hear(job, line.decode(errors="replace").rstrip("\r\n"))
         code = await process.wait()
         if job.state.state == "cancelled":
             return
@@ -182,7 +185,7 @@ class Jobs:
         if code == 0 and better.is_file():
             self._optimum(job.as_read(better.read_text(encoding="utf-8")))
         state, text = ("done", _ENDS.get(job.request.command, "done")) if code in (0, 1) else ("failed", f"ended with exit code {code}")
-        self._set(job, replace(job.state, state=state, text=text, fraction=1.0 if state == "done" else None, left=None))
+        self._set(job, state=state, text=text, fraction=1.0 if state == "done" else None, left=None)
 
     def _arguments(self, job: _Job) -> list[str]:
         """The files for its command; an unsaved text is stored temporarily next to its file."""
@@ -222,21 +225,21 @@ class Jobs:
             return
         _, fraction, left, text = [*job.as_read(line).split(" ", 3), ""][:4]
         with contextlib.suppress(ValueError):
-            self._set(job, replace(job.state, text=text, fraction=float(fraction), left=None if left == "-" else float(left)))
+            self._set(job, text=text, fraction=float(fraction), left=None if left == "-" else float(left))
 
     def _take(self, job: _Job, pair: Mapping[str, str] | None = None, tables: Iterable[tuple[Any, ...]] = ()) -> None:
         """Take a pair of a design job, in place of its earlier result, or the tables at its end."""
-        state = replace(job.state, tables=tuple(say.ResultTable(title, rows, notes) for title, rows, notes in tables))
+        pairs = job.state.pairs
         if pair is not None:
             row = say.PairRow(**{key: value for key, value in pair.items() if key != "design"})
             names = row.architecture, row.actuator
             job.designs[" with ".join(names)] = pair["design"]
-            state = replace(state, pairs=(*(each for each in state.pairs if (each.architecture, each.actuator) != names), row))
-        self._set(job, state)
+            pairs = (*(each for each in pairs if (each.architecture, each.actuator) != names), row)
+        self._set(job, pairs=pairs, tables=tuple(say.ResultTable(title, rows, notes) for title, rows, notes in tables))
 
-    def _set(self, job: _Job, state: say.JobState) -> None:
+    def _set(self, job: _Job, **changes: Any) -> None:
         if job.state.state != "cancelled":
-            job.state = state
+            job.state = replace(job.state, **changes)
             self._push()
 
     def _push(self) -> None:
@@ -275,15 +278,3 @@ def _study(text: str, design: Path, name: str) -> str:
     document["design"] = design.name
     document.setdefault("name", name)
     return tomlkit.dumps(document)
-
-
-async def _lines(stream: asyncio.StreamReader) -> AsyncIterator[str]:
-    """Lines of a stream, of any length."""
-    rest = b""
-    while chunk := await stream.read(65536):
-        *whole, rest = (rest + chunk).split(b"\n")
-        for line in whole:
-            yield line.decode(errors="replace").rstrip("\r")
-        rest = rest[-_LONGEST:]
-    if rest:
-        yield rest.decode(errors="replace")
