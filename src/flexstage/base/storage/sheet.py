@@ -124,25 +124,20 @@ def _inner(path: str, field: Field, heads: tuple[str, ...], rows: Sequence[_Row]
 
     `entries`: values of a list or mapping, with mappings as records.
     """
-    for sort, alike in _sorted(rows, entries=entries):
+    groups = dict[_Sort, list[_Row]]()
+    for row in rows:
+        groups.setdefault(_sort(row[-1], entry=entries), []).append(row)
+    for sort, alike in groups.items():
         if sort is _Sort.MATRIX:
             yield from ((".".join([path, *map(str, names)]), matrix) for *names, value in alike if (matrix := _matrix(value)) is not None)
-        elif sort is _Sort.RECORD:
-            yield from _parts(path, _name_rows(heads, alike), [_record(row[-1]) for row in alike])
-        elif sort is _Sort.CELL:
-            yield from _parts(path, _name_rows(heads, alike), [{field: row[-1]} for row in alike])
+        elif sort in (_Sort.RECORD, _Sort.CELL):
+            records = [_record(row[-1]) if sort is _Sort.RECORD else {field: row[-1]} for row in alike]
+            yield from _parts(path, _name_rows(heads, alike), records)
         else:
             items = [(*names, name, item) for *names, value in alike for name, item in _items(value)]
             plural = not any(is_cell(row[-1]) for row in items)
             head = field.words.removesuffix("s") if plural else "name" if sort is _Sort.NAMES else "number"
             yield from _inner(path, field, (*heads, head if head not in heads else f"{head} {len(heads) + 1}"), items, entries=True)
-
-
-def _sorted(rows: Iterable[_Row], *, entries: bool) -> Iterable[tuple[_Sort, list[_Row]]]:
-    result: dict[_Sort, list[_Row]] = {}
-    for row in rows:
-        result.setdefault(_sort(row[-1], entry=entries), []).append(row)
-    return result.items()
 
 
 def _sort(value: Any, *, entry: bool) -> _Sort:

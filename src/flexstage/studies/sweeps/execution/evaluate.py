@@ -73,11 +73,13 @@ def _compute(study: Study, values: Array, engine: Engine) -> tuple[Array, Reason
     others = tuple(name for name in columns if name not in engine.modes)
     result = np.full((len(values), len(columns)), np.nan)
     failures = _bisect(values, 0, lambda part: _check(study, part))[1]
-    sound = _sound_rows(values, failures)
+    sound = np.setdiff1d(np.arange(len(values)), list(failures))
     if engine.loaded:
         failures |= {int(sound[row]): reason for row, reason in unstable_designs(study, values[sound]).items()}
-        sound = _sound_rows(values, failures)
-    found, reasons = _bisect(values[sound], len(others), lambda part: _batch(study, part, others), apart=_along_paths(study, others))
+        sound = np.setdiff1d(sound, list(failures))
+    # measures along paths are sequential also in a batch, and slowest without an equilibrium
+    apart = any(study.columns[name].kind.along or study.columns[name].path for name in others)
+    found, reasons = _bisect(values[sound], len(others), lambda part: _batch(study, part, others), apart=apart)
     frequencies, sure = engine.answers(values[sound])
     for names, part in ((others, found), (engine.modes, frequencies)):
         result[np.ix_(sound, np.array([columns.index(name) for name in names], dtype=int))] = part
@@ -89,11 +91,6 @@ def _compute(study: Study, values: Array, engine: Engine) -> tuple[Array, Reason
     reasons = {int(row): failures.get(int(row)) or _missing_values(study, result[row]) for row in lost}
     result[lost] = np.nan
     return result, reasons
-
-
-def _sound_rows(values: Array, failures: Reasons) -> Array:
-    """Rows of the designs without failures."""
-    return np.array([row for row in range(len(values)) if row not in failures], dtype=int)
 
 
 def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str], *, apart: bool = False) -> tuple[Array, Reasons]:
@@ -111,12 +108,6 @@ def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str], *,
     parts = [_bisect(part, width, batch, apart=apart) for part in np.split(values, starts[1:])]
     reasons = {int(start + row): reason for start, (_, each) in zip(starts, parts, strict=True) for row, reason in each.items()}
     return np.concatenate([part for part, _ in parts]), reasons
-
-
-def _along_paths(study: Study, names: tuple[str, ...]) -> bool:
-    """Whether some are measures along paths: sequential also in a batch, and slowest without an equilibrium."""
-    measures = [study.columns[name] for name in names]
-    return any(each.kind.along or each.path for each in measures)
 
 
 def _check(study: Study, values: Array) -> Array | str:
