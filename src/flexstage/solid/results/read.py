@@ -51,7 +51,7 @@ class SolidRead:
 
     @property
     def _distinct(self) -> list[Placed]:
-        return list({id(item.element): item for item in self.placed}.values())
+        return list({id(item.element.skin): item for item in self.placed}.values())
 
 
 def solids(ways: Ways = STANDARD_WAYS) -> Solids:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,7 +27,6 @@ from flexstage.models.linear.channels import (
 )
 from flexstage.models.linear.model import Contribution, LinearModel, assemble
 from flexstage.parts.part import actuator_of
-from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.meshing.fineness import WARPS
 from flexstage.solid.fea.solver.casing import casing, end_face_twist
 from flexstage.solid.fea.solver.component import Component, Interface, Joint, groups, is_elastic
@@ -48,7 +47,10 @@ _SINGULAR = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A component with its superelement and the operator (n, N) that maps the N model coordinates to its n own coordinates."""
+    """A component with its superelement and the operator (n, N) that maps the N model coordinates to its n own coordinates.
+
+    The laws of the superelement have the names of this instance of the component.
+    """
 
     component: Component
     element: Superelement
@@ -135,13 +137,13 @@ def linear_model(
 
 def _join(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> _Model:
     blocks, names = _coordinates(assembly, parts)
-    placed = _place(assembly, parts, blocks, len(names))
+    placed = place_parts(assembly, parts)
     twists: dict[str, Array] = {}
     for body in assembly.bodies:
         if not is_elastic(assembly, body):
             twists[body] = np.eye(len(names))[blocks[body]]
     for item in placed:
-        for body, mean in zip(item.component.bodies, item.element.bodies.values(), strict=True):
+        for body, mean in item.element.bodies.items():
             twists[body] = spatial_rotation(item.component.place.rotation) @ mean @ item.operator
     return _Model(mechanism, assembly, names, blocks, placed, twists, dict(_seats(placed)))
 
@@ -163,13 +165,17 @@ def place_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement],
     ()
     """
     blocks, names = _coordinates(assembly, parts)
-    return _place(assembly, parts, blocks, len(names))
+    return tuple(
+        Placed(component, _named(component, element), _operator(assembly, component, element, blocks, len(names)))
+        for component, element in parts
+    )
 
 
-def _place(
-    assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...], blocks: Mapping[str, slice], size: int
-) -> tuple[Placed, ...]:
-    return tuple(Placed(component, element, _operator(assembly, component, element, blocks, size)) for component, element in parts)
+def _named(component: Component, element: Superelement) -> Superelement:
+    """A superelement with the names of one instance."""
+    names = dict(zip(element.stiffness, groups(component), strict=True))
+    laws = ("stiffness", "inertia", "bodies", "body_inertia", "resultants", "strokes", "free_strokes")
+    return replace(element, **{law: {names[name]: value for name, value in getattr(element, law).items()} for law in laws})
 
 
 def _coordinates(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[dict[str, slice], tuple[str, ...]]:
@@ -231,13 +237,9 @@ def _operator(assembly: Assembly, component: Component, element: Superelement, b
     return result
 
 
-def _links(component: Component) -> tuple[str, ...]:
-    return tuple(piece.name for piece in component.pieces if piece.body is None)
-
-
 def _stiffness(model: _Model) -> Iterator[tuple[str, Contribution]]:
     for item in model.placed:
-        for name, law in zip(groups(item.component), item.element.stiffness.values(), strict=True):
+        for name, law in item.element.stiffness.items():
             label = name if name in model.assembly.links else f"{name} (body)"
             yield label, Contribution(item.operator, law, _loss_factor(model, name))
     for name, link in model.assembly.links.items():
@@ -265,11 +267,11 @@ def _loss_factor(model: _Model, name: str) -> float:
 
 def _inertia(model: _Model) -> Iterator[tuple[str, Contribution]]:
     for item in model.placed:
-        for number, (name, law) in enumerate(zip(groups(item.component), item.element.inertia.values(), strict=True)):
+        for name, law in item.element.inertia.items():
             if name in model.assembly.links:
                 yield f"{name} (link)", Contribution(item.operator, law)
             else:
-                yield from _body_inertia(model, item, name, number)
+                yield from _body_inertia(model, item, name)
     for name, body in model.assembly.bodies.items():
         if is_elastic(model.assembly, name):
             for number, load in enumerate(carried_masses(model.mechanism, body)[1:]):
@@ -283,14 +285,12 @@ def _inertia(model: _Model) -> Iterator[tuple[str, Contribution]]:
         yield f"{name} (link)", tie.inertia
 
 
-def _body_inertia(model: _Model, item: Placed, name: str, number: int) -> Iterator[tuple[str, Contribution]]:
+def _body_inertia(model: _Model, item: Placed, name: str) -> Iterator[tuple[str, Contribution]]:
     """A body's inertia with its mean twist, and that of its elastic motion about it; the two are orthogonal."""
-    place = list(item.component.bodies).index(name)
-    mean, own = list(item.element.bodies.values())[place], list(item.element.body_inertia.values())[place]
+    mean, own = item.element.bodies[name], item.element.body_inertia[name]
     turn = spatial_rotation(item.component.place.rotation)
     yield name, Contribution(model.twists[name], turn @ own @ turn.T)
-    whole = list(item.element.inertia.values())[number]
-    yield f"{name} (elastic)", Contribution(item.operator, whole - mean.T @ own @ mean)
+    yield f"{name} (elastic)", Contribution(item.operator, item.element.inertia[name] - mean.T @ own @ mean)
 
 
 def _require_support(model: _Model, elastic: Mapping[str, Contribution]) -> None:
@@ -321,13 +321,11 @@ def _stroke(model: _Model, link: str) -> Array:
     """Coordinates of a component (n,) imposed by a link's unit stroke, or the twist between its faces (6,) without a shape."""
     if link in model.ties:
         return np.real(actuator_of(model.assembly.links[link].part).free_deformation)
-    item = _holder(model, link)
-    number = [name for name in _links(item.component) if isinstance(model.assembly.links[name].part, Piezo)].index(link)
-    return list(item.element.free_strokes.values())[number]
+    return _holder(model, link).element.free_strokes[link]
 
 
 def _holder(model: _Model, link: str) -> Placed:
-    return next(item for item in model.placed if link in _links(item.component))
+    return next(item for item in model.placed if link in item.element.resultants)
 
 
 def _outputs(model: _Model, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
@@ -350,7 +348,7 @@ def _resultant(model: _Model, name: str) -> tuple[Array, Array]:
         law = tie.passed @ tie.strain.law
         return law, law @ tie.strain.operator
     item, link = _holder(model, name), model.assembly.links[name]
-    law, sleeve = list(item.element.resultants.values())[_links(item.component).index(name)], casing(link)
+    law, sleeve = item.element.resultants[name], casing(link)
     own = law @ item.operator
     return law, own if sleeve is None else own + sleeve @ _across(item, link)
 

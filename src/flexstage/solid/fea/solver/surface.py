@@ -11,32 +11,21 @@ from flexstage.solid.fea.solver.assemble import Placed
 from flexstage.solid.fea.solver.component import groups
 
 
-def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
+def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array]) -> Array:
     """Compute the coordinates (n, k) of a component that cause stress, from the model's `motion` (N, k) and the stacks' `strokes` (k,) [m].
 
     A freely expanding stack has no stress; therefore its free stroke is subtracted.
 
     >>> from types import SimpleNamespace as Of
-    >>> stack = Of(name="B/pzt", body=None)
-    >>> element = Of(stiffness={"A/pzt": None}, resultants={"A/pzt": None}, free_strokes={"A/pzt": np.array([1.0])})
-    >>> copy = Of(component=Of(pieces=(stack,)), element=element, operator=np.array([[2.0]]))
+    >>> copy = Of(element=Of(free_strokes={"B/pzt": np.array([1.0])}), operator=np.array([[2.0]]))
     >>> element_coordinates(copy, np.array([[3.0]]), {"B/pzt": np.array([5.0])}).tolist()  # 2 x 3 - 5
     [[1.0]]
     """
     own = item.operator @ motion
-    for name, free in _stacks(item):
-        stroke = (strokes or {}).get(name)
-        if stroke is not None:
-            own = own - free[:, None] * stroke
-    return own
-
-
-def _stacks(item: Placed) -> Iterator[tuple[str, Array]]:
-    """The names of the stacks in this instance (the superelement may be another instance's), with their free strokes."""
-    reduced = [name for name in item.element.stiffness if name in item.element.resultants]
-    links = [piece.name for piece in item.component.pieces if piece.body is None]
     for name, free in item.element.free_strokes.items():
-        yield links[reduced.index(name)], free
+        if name in strokes:
+            own = own - free[:, None] * strokes[name]
+    return own
 
 
 def stresses(item: Placed, coordinates: Array) -> Array:
