@@ -24,7 +24,7 @@ from flexstage.parts.part import is_actuator
 from flexstage.parts.profile import Contour, Filleted
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.geometry.draw import specimen
-from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors
+from flexstage.solid.fea.geometry.mirror import MIRRORS
 from flexstage.solid.fea.geometry.piece import Medium, is_mirrored, medium, span
 from flexstage.solid.fea.hinges.hinge_form import LEAVE, NO_ESTIMATE, HingeSolid
 from flexstage.solid.fea.hinges.roots import Roots, own_roots, rises
@@ -36,7 +36,7 @@ from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy, change, remaining
 from flexstage.solid.fea.meshing.fineness import Fineness, is_thin
 from flexstage.solid.fea.meshing.mesh import PieceMesh, core_points, generate_mesh, restrict_sizes
-from flexstage.solid.fea.solver.field import Field, apply_form, factorise, field, rigid, stiffness, times
+from flexstage.solid.fea.solver.field import Columns, Field, apply_form, field, rigid, solve_kinds, stiffness, times
 from flexstage.spatial.frame import identity, transport
 
 _SYMMETRY = 1e-8
@@ -106,14 +106,6 @@ class _Subject:
         """The specimen, cut if hinge and medium are symmetric; not through the thickness of leaves: their elements are flat."""
         across = [axis for axis in MIRRORS if is_mirrored(self.medium, axis) and not (axis == 1 and self.part.slender)]
         return specimen(self.part, (self.first, self.second), size).cut(across)
-
-
-@dataclass(frozen=True, eq=False)
-class _Mesh:
-    """A mesh [mm], and its symmetry planes."""
-
-    mesh: ngsolve.Mesh
-    mirrors: Mirrors
 
 
 _NOBODY = Call()
@@ -230,36 +222,36 @@ def _solves(subject: _Subject, accuracy: Accuracy, call: Call) -> Iterator[_Solv
         cut = _mesh(subject, accuracy.shrink**refinement, highest)
         if refinement == 0:
             telling = max(lowest, _TELLING_THIN if is_thin(subject.part) else _TELLING)
-            if cut.mirrors.copies * _space(subject, cut, min(telling, highest)).size > accuracy.freedoms:
+            if cut.mirrors.copies * _space(cut, min(telling, highest)).size > accuracy.freedoms:
                 lowest, cut = 2, _mesh(subject, _COARSER, highest)
             mesh = cut.mesh
             call.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
-            space = _space(subject, cut, order)
+            space = _space(cut, order)
             if cut.mirrors.copies * space.size > accuracy.freedoms:
                 return
             call.report(Stage.FACTORISING, 0.0)
-            yield _Solve(_law(subject.part, space, cut), cut.mirrors.copies * space.size, cut.mirrors.copies * cut.mesh.ne, order)
+            yield _Solve(_law(subject.part, space), cut.mirrors.copies * space.size, cut.mirrors.copies * cut.mesh.ne, order)
 
 
-def _space(subject: _Subject, cut: _Mesh, order: int) -> Field:
+def _space(cut: PieceMesh, order: int) -> Field:
     cut.mesh.Curve(order)
-    owner, finer = np.zeros(cut.mesh.ne, dtype=int), np.zeros(cut.mesh.ne, dtype=bool)
-    return field(PieceMesh(cut.mesh, (subject.medium,), (START, END), owner, finer, cut.mirrors), [START, END], order)
+    return field(cut, cut.faces, order)
 
 
-def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
+def _law(part: Shaped, space: Field) -> Array:
     """Stiffness (6, 6) of the whole specimen: energies of the motions with one outer face moved and the other fixed.
 
     Motions of different kinds about a plane of symmetry have no common energy.
     """
-    form, motion, law = stiffness(space), rigid(space, identity(), faces=END), np.zeros((6, 6))
-    strained, forces = stiffness(space, assemble=False), times([form], motion)  # by strains: K u of a thin leaf is rounding
-    kinds = cut.mirrors.twist_kinds(np.eye(3))
-    for kind in range(cut.mirrors.copies):
+    form, motion, mirrors = stiffness(space), rigid(space, identity(), faces=END), space.meshed.mirrors
+    kinds = mirrors.twist_kinds(np.eye(3))
+    motion -= solve_kinds(space, [form], Columns(times([form], motion), kinds))
+    forces = apply_form(stiffness(space, assemble=False), motion)  # by strains: K u of a thin leaf is rounding
+    law = np.zeros((6, 6))
+    for kind in range(mirrors.copies):
         alike = np.flatnonzero(kinds == kind)
-        own = motion[:, alike] - factorise(space, form, kind)(forces[:, alike])
-        law[np.ix_(alike, alike)] = cut.mirrors.copies * (own.T @ apply_form(strained, own))
+        law[np.ix_(alike, alike)] = mirrors.copies * (motion[:, alike].T @ forces[:, alike])
     _require_symmetric(part, law)
     return _symmetrise(law)
 
@@ -279,7 +271,7 @@ def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, ord
     return _mesh(_Subject.of(part, Medium(1.0, 0.0, 1.0), stub, own_roots(part)), factor, order).mesh
 
 
-def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
+def _mesh(subject: _Subject, factor: float, order: int) -> PieceMesh:
     reason = "the mesher did not run"
     for shrink, grading, curvature in _ATTEMPTS:
         drawn = subject.draw(factor * shrink)
@@ -292,7 +284,8 @@ def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
         }
         outcome = _attempt(drawn, sizes, order)
         if isinstance(outcome, ngsolve.Mesh):
-            return _Mesh(outcome, drawn.mirrors)
+            none = np.zeros(outcome.ne, dtype=int)
+            return PieceMesh(outcome, (subject.medium,), (START, END), none, none > 0, drawn.mirrors)
         reason = outcome
     raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Check the proportions of the hinge")
 
