@@ -15,8 +15,9 @@ from flexstage.solid.fea.meshing.fineness import Fineness
 from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.solver import skin
 from flexstage.solid.fea.solver.component import Component, Joint
-from flexstage.solid.fea.solver.field import apply_form, factorise, field, stiffness
+from flexstage.solid.fea.solver.field import apply_form, field, stiffness
 from flexstage.spatial.frame import Frame, identity
+from tests.models.solids import solver
 
 SOFT, STIFF = Medium(young=100e9, poisson=0.15, density=1.0), Medium(young=200e9, poisson=0.3, density=1.0)
 """Alike in nu/E: pulled in series both contract alike sideways, so that uniform strain in each is the exact solution."""
@@ -56,7 +57,7 @@ def continued(space, given):
     function = ngsolve.GridFunction(space.space)
     function.Set(given, definedon=space.meshed.mesh.Boundaries("start|end|held"))
     start = function.vec.FV().NumPy().copy()
-    correction = factorise(space, stiffness(space))(apply_form(stiffness(space, assemble=False), start[:, None]))[:, 0]
+    correction = solver(space, stiffness(space))(apply_form(stiffness(space, assemble=False), start[:, None]))[:, 0]
     function.vec.FV().NumPy()[:] = start - correction
     return function
 

@@ -17,9 +17,10 @@ from flexstage.solid.fea.meshing.bar import bar
 from flexstage.solid.fea.meshing.fineness import Fineness
 from flexstage.solid.fea.meshing.mesh import mesh_component
 from flexstage.solid.fea.solver import frontal
-from flexstage.solid.fea.solver.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, solve_kinds, stiffness
+from flexstage.solid.fea.solver.field import Columns, factorise_kinds, field, grid, inertia, nodes_on, solve_kinds, stiffness
 from flexstage.solid.fea.solver.frontal import Factorised, Fronts, dissect, factorise_fronts
 from flexstage.solid.fea.solver.krylov import Pencil, lowest_modes
+from tests.models.solids import solver
 
 ORDER = 3
 SPACE = field(mesh_component(bar(), Fineness(order=ORDER, block=1.0)), ["foot"], ORDER)
@@ -37,7 +38,7 @@ def dense() -> np.ndarray:
 def test_motions_are_those_of_the_other_solver() -> None:
     forces = np.random.default_rng(1).standard_normal((SPACE.size, 5))
     forces[~SPACE.free] = 0.0
-    found = factorise(SPACE, ELASTIC)(forces)
+    found = solver(SPACE, ELASTIC)(forces)
     inverse = ELASTIC.mat.Inverse(SPACE.space.FreeDofs(), inverse="sparsecholesky")
     x, y = ngsolve.BaseVector(SPACE.size), ngsolve.BaseVector(SPACE.size)
     x.FV().NumPy()[:] = forces[:, 0]
@@ -70,7 +71,7 @@ def test_traces_are_added_alike_in_blocks_and_scattered(monkeypatch: pytest.Monk
     found = []
     for scattered in (0.0, np.inf):
         monkeypatch.setattr(frontal, "SCATTERED", scattered)
-        found.append(factorise(SPACE, ELASTIC)(forces))
+        found.append(solver(SPACE, ELASTIC)(forces))
     np.testing.assert_array_equal(*found)
 
 
@@ -137,7 +138,7 @@ def test_what_is_not_definite_is_refused() -> None:
 
 
 def test_lowest_modes_are_the_dense_ones() -> None:
-    mass, solve = inertia(SPACE), factorise(SPACE, ELASTIC)
+    mass, solve = inertia(SPACE), solver(SPACE, ELASTIC)
 
     def full(x: np.ndarray) -> np.ndarray:
         result = np.zeros((SPACE.size, x.shape[1]))

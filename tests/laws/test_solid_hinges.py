@@ -19,8 +19,9 @@ from flexstage.solid.fea.hinges.hinge import hinge_compliance, hinge_mesh
 from flexstage.solid.fea.hinges.specimen import END, START
 from flexstage.solid.fea.meshing.estimate import Accuracy, change
 from flexstage.solid.fea.meshing.mesh import PieceMesh
-from flexstage.solid.fea.solver.field import apply_form, factorise, field, rigid, stiffness
+from flexstage.solid.fea.solver.field import apply_form, field, rigid, stiffness
 from flexstage.spatial.frame import axes, identity
+from tests.models.solids import solver
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 MM = 1e-3
@@ -96,7 +97,7 @@ def test_stiffness_is_symmetric(part):
     _, held = spaces(part)
     form, moved = stiffness(held), rigid(held, identity(), faces=END)
     free = stiffness(held, assemble=False)
-    motion = moved - factorise(held, form)(apply_form(free, moved))
+    motion = moved - solver(held, form)(apply_form(free, moved))
     law = motion.T @ apply_form(free, motion)
     assert change(law, law.T) < 1e-8
 

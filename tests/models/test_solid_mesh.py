@@ -20,8 +20,9 @@ from flexstage.solid.fea.meshing.fineness import Fineness
 from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.meshing.straighten import jacobians, straighten
 from flexstage.solid.fea.solver.component import Component, components
-from flexstage.solid.fea.solver.field import factorise, field, rigid, stiffness
+from flexstage.solid.fea.solver.field import field, rigid, stiffness
 from flexstage.spatial.frame import identity
+from tests.models.solids import solver
 
 STAGE = double_triangle()
 
@@ -39,7 +40,7 @@ def compliance(component: Component, mesh: PieceMesh, order: int) -> np.ndarray:
     space = field(mesh, [moving, *(joint.name for joint in component.fixed)], order)
     form = stiffness(space)
     motion = rigid(space, identity(), faces=moving)
-    total = motion - factorise(space, form)(_times(form, motion))
+    total = motion - solver(space, form)(_times(form, motion))
     return np.linalg.inv(total.T @ _times(form, total))
 
 

@@ -26,10 +26,11 @@ from flexstage.solid.fea.meshing.estimate import Accuracy
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.solver.component import Component, Interface, Joint, components, groups
-from flexstage.solid.fea.solver.field import apply_form, factorise, field, rigid, stiffness
+from flexstage.solid.fea.solver.field import apply_form, field, rigid, stiffness
 from flexstage.solid.fea.solver.reduce import reduce_mesh
 from flexstage.solid.fea.solver.superelement import Superelement
 from flexstage.spatial.frame import Frame, identity
+from tests.models.solids import solver
 from tests.unfolded import unfold
 
 PLAN = Reduction(Fineness(neck=2.0, order=2), modes=7)
@@ -110,7 +111,7 @@ def test_a_side_of_a_hinge_is_the_whole(part: Neck | Leaf, axes: tuple[int, ...]
     space = field(unfold(cut), [START, END], 2)
     form, moved = stiffness(space), rigid(space, identity(), faces=END)
     law = stiffness(space, assemble=False)
-    motion = moved - factorise(space, form)(apply_form(law, moved))
+    motion = moved - solver(space, form)(apply_form(law, moved))
     expected = motion.T @ apply_form(law, motion)
     scale = 1.0 / np.sqrt(np.diag(expected))
     found = np.linalg.inv(hinge_compliance(part, metal, Accuracy(error=0.0, orders=(2, 2), meshes=1)).whole)

@@ -16,8 +16,9 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from flexstage.base.number import Array
 from flexstage.solid.fea.geometry.piece import MILLIMETRES
 from flexstage.solid.fea.meshing.mesh import PieceMesh
-from flexstage.solid.fea.solver.field import Field, factorise, field, inertia, stiffness
+from flexstage.solid.fea.solver.field import Field, field, inertia, stiffness
 from tests.elsewhere.calculix.problems import Problem, Solution
+from tests.models.solids import solver
 
 MODES = 6
 
@@ -35,7 +36,7 @@ def solved(problem: Problem, mesh: PieceMesh, law: Law = Law()) -> Solution:
     space = field(mesh, [problem.held], law.order)
     elastic = stiffness(space)
     mass = _sparse(_by_four_points(space)) if law.few_points else _mass(space)
-    solve = factorise(space, elastic)
+    solve = solver(space, elastic)
     forces = np.column_stack([_force(space, problem.loaded, axis) for axis in range(3)])
     free = np.flatnonzero(space.free)
     full = np.zeros(space.size)

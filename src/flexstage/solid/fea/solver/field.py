@@ -162,10 +162,11 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
     return 0.5 * (ngsolve.Grad(displacement) + ngsolve.Grad(displacement).trans)
 
 
-def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
+def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True, shift: float = 0.0) -> ngsolve.BilinearForm:
     """Build the elastic form: the integral of stress(u) : strain(v) [N/m] over some elements (mask) or all, for two motions u and v.
 
-    A form that is not assembled can be used only with `apply_form`.
+    A form that is not assembled can be used only with `apply_form`. `shift` times the inertia is added, so that a form without support is
+    positive definite.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -174,10 +175,15 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
     >>> forces = times([stiffness(space)], rigid(space, Frame(np.eye(3), np.zeros(3))))
     >>> bool(np.abs(forces).max() < 1e-3)  # N per m and rad, of a bar of 1e8 N/m
     True
+    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
+    >>> round((moved.T @ times([stiffness(space, shift=100.0)], moved)).item(), 5)  # 100 / s^2 times 10 g
+    1.0
     """
     u, v = space.space.TnT()
     form = ngsolve.BilinearForm(space.space, symmetric=True, nonassemble=not assemble)
     form += _PER_METRE * ngsolve.InnerProduct(space.stress(strain(u)), strain(v)) * _volume(elements)
+    if shift:
+        form += shift * _PER_VOLUME * space.density * ngsolve.InnerProduct(u, v) * _volume(elements)
     return form.Assemble() if assemble else form
 
 
@@ -263,18 +269,16 @@ def stroke_force(space: Field, frame: Frame, length: float) -> Array:
     >>> from flexstage.solid.fea.meshing.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
-    >>> motion = factorise(space, stiffness(space))(stroke_force(space, Frame(np.eye(3), np.zeros(3)), 0.1))
-    >>> round(float((mean_motion(space, end, "end") @ motion)[0]), 9)  # a unit stroke lengthens it by one
+    >>> force = stroke_force(space, Frame(np.eye(3), np.zeros(3)), 0.1)
+    >>> motion = solve_kinds(space, [stiffness(space)], Columns.of(force[:, None]))
+    >>> round(float((mean_motion(space, end, "end") @ motion)[0, 0]), 9)  # a unit stroke lengthens it by one
     1.0
     """
     axis = np.outer(frame.rotation[:, 0], frame.rotation[:, 0]) / length
     imposed = ngsolve.CoefficientFunction(tuple(axis.ravel()), dims=(3, 3))
     v = space.space.TestFunction()
-    form = ngsolve.LinearForm(space.space)
     # Strains of v are per mm: one factor 1e3; the volume 1e-9.
-    form += MILLIMETRES * _PER_VOLUME * ngsolve.InnerProduct(space.stress(imposed), strain(v)) * ngsolve.dx
-    form.Assemble()
-    return np.array(form.vec.FV().NumPy())
+    return _integrals(space, MILLIMETRES * _PER_VOLUME * ngsolve.InnerProduct(space.stress(imposed), strain(v)) * ngsolve.dx)
 
 
 def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
@@ -314,8 +318,7 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
     >>> warping_motion(space, end, 0.01, "end").shape == (space.size, WARPS)
     True
     """
-    arm = [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), frame.position, strict=True)]
-    across = [sum(float(c) * a for c, a in zip(frame.rotation[:, k], arm, strict=True)) * (1.0 / size) for k in (1, 2)]
+    across = [sum(float(c) * a for c, a in zip(frame.rotation[:, k], _arm(frame.position), strict=True)) * (1.0 / size) for k in (1, 2)]
     y, z = across
     square = (y * y, y * z, z * z)
     local = [(0, y, 0), (0, 0, z), (0, z, y), *(tuple(f if k == axis else 0 for k in range(3)) for axis in range(3) for f in square)]
@@ -339,9 +342,14 @@ def _rigid_motion(frame: Frame, axis: int) -> ngsolve.CoefficientFunction:
     direction = frame.rotation[:, axis % 3]
     if axis < 3:
         return ngsolve.CoefficientFunction(tuple(float(value) for value in direction))
-    arm = [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), frame.position, strict=True)]
+    arm = _arm(frame.position)
     a, b, c = (float(value) for value in direction)
     return ngsolve.CoefficientFunction((b * arm[2] - c * arm[1], c * arm[0] - a * arm[2], a * arm[1] - b * arm[0]))
+
+
+def _arm(start: Array) -> list[ngsolve.CoefficientFunction]:
+    """The vector from a point [m]."""
+    return [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), start, strict=True)]
 
 
 def _coordinates() -> tuple[ngsolve.CoefficientFunction, ...]:
@@ -384,7 +392,7 @@ def nodes_on(space: Field, face: str) -> Array:
     True
     """
     found = space.space.components[0].GetDofs(space.meshed.mesh.Boundaries(_escape(face)))
-    return np.array([bool(bit) for bit in found], dtype=bool)
+    return np.array(list(found), dtype=bool)
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
@@ -397,17 +405,26 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
     >>> from flexstage.solid.fea.meshing.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
-    >>> mean_motion(space, end, "end").shape == (6, space.size)
-    True
+    >>> mean = mean_motion(space, end, "end")
+    >>> round(1e-6 / float((mean @ solve_kinds(space, [stiffness(space)], Columns.of(mean.T)))[0, 0]), 6)  # E A / L, N/um
+    100.0
     """
+    return _mean_twist(space, frame, lambda work: work * ngsolve.ds(_escape(face)))
+
+
+def _mean_twist(space: Field, frame: Frame, over: Callable[[ngsolve.CoefficientFunction], Any]) -> Array:
+    """Rows (6, n) of a mean twist in a frame; `over` weighs an integrand on a surface."""
     v = space.space.TestFunction()
-    rows = np.empty((6, space.size))
-    for axis in range(6):
-        form = ngsolve.LinearForm(space.space)
-        form += ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * ngsolve.ds(_escape(face))
-        form.Assemble()
-        rows[axis] = form.vec.FV().NumPy()
+    rows = np.array([_integrals(space, over(ngsolve.InnerProduct(_rigid_motion(frame, axis), v))) for axis in range(6)])
     return np.linalg.solve(rows @ rigid(space, frame), rows)
+
+
+def _integrals(space: Field, integrand: Any) -> Array:
+    """Integrals (n,) for each basis function."""
+    form = ngsolve.LinearForm(space.space)
+    form += integrand
+    form.Assemble()
+    return np.array(form.vec.FV().NumPy())
 
 
 def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
@@ -426,21 +443,13 @@ def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array
     >>> bool(np.allclose(rows @ rigid(space, Frame(np.eye(3), at)), np.eye(6)))
     True
     """
-    frame, mesh = Frame(np.eye(3), point), space.meshed.mesh
+    mesh = space.meshed.mesh
     used = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.Elements(ngsolve.BND)])[faces]
     places = np.array([mesh.vertices[int(number)].point for number in np.unique(used)]) / MILLIMETRES
     least = float(np.min(np.sum((places - point) ** 2, axis=1)))
-    away = sum((coordinate * (1.0 / MILLIMETRES) - float(at)) ** 2 for coordinate, at in zip(_coordinates(), point, strict=True))
-    bell = ngsolve.exp((least - away) * (1.0 / reach**2))
-    v = space.space.TestFunction()
-    rows = np.empty((6, space.size))
-    for axis in range(6):
-        form = ngsolve.LinearForm(space.space)
-        around = ngsolve.ds(definedonelements=ngsolve.BitArray(faces.tolist()), bonus_intorder=_BELL)
-        form += bell * ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * around
-        form.Assemble()
-        rows[axis] = form.vec.FV().NumPy()
-    return np.linalg.solve(rows @ rigid(space, frame), rows)
+    bell = ngsolve.exp((least - sum(each**2 for each in _arm(point))) * (1.0 / reach**2))
+    around = ngsolve.ds(definedonelements=ngsolve.BitArray(faces.tolist()), bonus_intorder=_BELL)
+    return _mean_twist(space, Frame(np.eye(3), point), lambda work: bell * work * around)
 
 
 Forms = Sequence[ngsolve.BilinearForm]
@@ -469,24 +478,6 @@ def _symmetric_times(matrix: Any, vectors: Array) -> Array:
 def _matrix(form: ngsolve.BilinearForm) -> Any:
     """The matrix (n, n) of a form as `scipy.sparse.csr_array`, sharing its memory."""
     return scipy.sparse.csr_array(tuple(np.asarray(each) for each in form.mat.CSR()), shape=(form.mat.height, form.mat.width))
-
-
-def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
-    """Return the stiffness plus `shift` times the inertia: the sum is positive definite even without support.
-
-    >>> from flexstage.solid.fea.meshing.bar import bar
-    >>> from flexstage.solid.fea.meshing.fineness import Fineness
-    >>> from flexstage.solid.fea.meshing.mesh import mesh_component
-    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
-    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
-    >>> round((moved.T @ times([shift_stiffness(space, 100.0)], moved)).item(), 5)  # 100 / s^2 times 10 g
-    1.0
-    """
-    u, v = space.space.TnT()
-    form = ngsolve.BilinearForm(space.space, symmetric=True)
-    form += _PER_METRE * ngsolve.InnerProduct(space.stress(strain(u)), strain(v)) * ngsolve.dx
-    form += shift * _PER_VOLUME * space.density * ngsolve.InnerProduct(u, v) * ngsolve.dx
-    return form.Assemble()
 
 
 def held_at_mirrors(space: Field, kind: int) -> Array:
@@ -577,24 +568,6 @@ def _solve_each(forces: Columns, solver: Callable[[int], Solver]) -> Array:
     for kind in np.unique(forces.kinds):
         result[:, forces.kinds == kind] = solver(kind)(forces.kind(kind))
     return result
-
-
-def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver:
-    """Return a solver for a form's matrix on the free DOFs: a function of forces (n, k) that returns displacements, zero at fixed DOFs.
-
-    DOFs at the mirrors that are zero in motions of this `kind` are fixed in addition to the fixed DOFs of the field.
-
-    >>> from flexstage.solid.fea.meshing.bar import bar
-    >>> from flexstage.solid.fea.meshing.fineness import Fineness
-    >>> from flexstage.solid.fea.meshing.mesh import mesh_component
-    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
-    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
-    >>> mean = mean_motion(space, end, "end")
-    >>> round(1e-6 / float((mean @ factorise(space, stiffness(space))(mean.T))[0, 0]), 6)  # E A / L, N/um
-    100.0
-    """
-    (solve,) = _solvers(space, [form], [kind])
-    return lambda forces: solve(forces.reshape(len(forces), -1)).reshape(forces.shape)
 
 
 def _solvers(space: Field, forms: Forms, kinds: Iterable[int]) -> Iterator[Solver]:

@@ -26,8 +26,8 @@ from flexstage.solid.fea.solver.field import (
     factorise_kinds,
     mean_motion,
     rigid,
-    shift_stiffness,
     solve_kinds,
+    stiffness,
     times,
     warp_kinds,
     warping_motion,
@@ -83,7 +83,7 @@ def support(component: Component, space: Field, reduction: Reduction, *, elastic
         return _afloat(component, space, mass, loads)
     loose = [item for item in component.interfaces if not is_rigid(component, item, reduction.hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
-    law = [shift_stiffness(space, _SHIFT)] if unsupported else elastic
+    law = [stiffness(space, shift=_SHIFT)] if unsupported else elastic
     once = not (loose or reduction.modes or reduction.residual)
     plain = partial(solve_kinds, space, law) if once else factorise_kinds(space, law)
     if not loose:
@@ -131,7 +131,7 @@ def middle(component: Component) -> Array:
 def _afloat(component: Component, space: Field, mass: Inertia, loads: Columns) -> Support:
     """Response of a component without support: a rigid motion, and a remainder without momentum and angular momentum."""
     motion = rigid(space, Frame(np.eye(3), middle(component)))
-    plain = factorise_kinds(space, [shift_stiffness(space, _SHIFT)])
+    plain = factorise_kinds(space, [stiffness(space, shift=_SHIFT)])
     solve = _held(plain, mass.times(motion).T)[1]
     return Support(Columns.of(motion), Columns.of(np.zeros((space.size, 0))), _moved(loads, solve), solve)
 
