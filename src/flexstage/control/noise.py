@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -76,10 +76,9 @@ class NoiseBudget(InNotebook):
     @property
     def by_kind(self) -> Matrix:
         """Mean squares by output and kind of source."""
-        columns = [np.sum(self.squares[:, [source.kind is kind for source in self.sources]], axis=1) for kind in self.kinds]
-        values = np.stack(columns, axis=1) if columns else np.zeros((len(self.outputs), 0))
-        units = tuple((f"{channel.unit}^2",) * len(columns) for channel in self.outputs)
-        return Matrix(values, tuple(channel.name for channel in self.outputs), tuple(kind.value for kind in self.kinds), units)
+        values = _sum_by(self.squares, [source.kind for source in self.sources], self.kinds)
+        units = tuple((f"{unit}^2",) * len(self.kinds) for unit in self.units)
+        return Matrix(values, self.output_names, tuple(kind.value for kind in self.kinds), units)
 
     @property
     def output_names(self) -> Annotated[tuple[str, ...], Called("outputs")]:
@@ -131,7 +130,8 @@ def noise_budget(
     seen, count = (*outputs, *(name for name in gauges if name not in outputs)), len(outputs)
     both, sources = white_system(closed, seen)
     white, readings = (select(both, both.input_names, names) for names in (outputs, gauges))
-    squares, listed = _sum_by_source(mean_squares(white), sources)
+    listed = tuple(dict.fromkeys(sources))
+    squares = _sum_by(mean_squares(white), sources, listed)
     spectra = band_spectra(closed, floor, seen)
     nodes, weights = quadrature(_panels(closed, floor, band))
     every = np.abs(disturbance_response(closed, tuple(spectra), seen, nodes)) ** 2
@@ -171,18 +171,17 @@ def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven
     return np.sqrt(squares) / np.where(steps > 0.0, steps, np.nan)
 
 
-def _sum_by_source(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, tuple[Source, ...]]:
-    """Sum of the columns of each source."""
-    listed = tuple(dict.fromkeys(sources))
-    columns = [np.sum(squares[..., [each == source for each in sources]], axis=-1) for source in listed]
-    return np.stack(columns, axis=-1) if columns else np.zeros((*squares.shape[:-1], 0)), listed
+def _sum_by(squares: Array, labels: Sequence[Any], groups: Sequence[Any]) -> Array:
+    """Sum of the columns of each group."""
+    columns = [np.sum(squares[..., [each == group for each in labels]], axis=-1) for group in groups]
+    return np.stack(columns, axis=-1) if columns else np.zeros((*squares.shape[:-1], 0))
 
 
 def _white_density(white: System, sources: tuple[Source, ...], frequencies: Array) -> Array:
     """One-sided densities (f, p, k) of white sources: 2 T |H|^2, or 2 |H|^2 of a continuous loop; zero above half the sampling rate."""
     step = white.step or np.nan
     size = np.where((frequencies <= 0.5 / step)[:, None, None], 2.0 * step * np.abs(white.sweep(frequencies)) ** 2, 0.0)
-    return _sum_by_source(size, sources)[0]
+    return _sum_by(size, sources, tuple(dict.fromkeys(sources)))
 
 
 def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:

@@ -145,9 +145,9 @@ def _with_amplifiers(
     given, step = closed.plant, closed.step
     for name in bounded_amplifiers(closed, outputs):
         density = given.hardware.amplifiers[name].noise_density or 0.0
-        column = select(given.system, [name], given.system.output_names[:1]).B
+        column = given.system.B[:, [given.system.input_names.index(name)]]
         factor = held_noise(given.system.A, column * density / np.sqrt(2.0), step or 0.0)
-        entry = np.vstack([factor, np.zeros((len(whole.A) - len(factor), factor.shape[1]))])
+        entry = np.pad(factor, ((0, len(whole.A) - len(factor)), (0, 0)))
         inputs = tuple(Channel(f"amplified.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
         direct = np.zeros((len(whole.outputs), len(inputs)))
         whole = replace(whole, B=np.hstack([whole.B, entry]), D=np.hstack([whole.D, direct]), inputs=(*whole.inputs, *inputs))

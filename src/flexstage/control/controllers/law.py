@@ -64,6 +64,17 @@ def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator
             yield Finding(kind, f"{name} is {value:g}{unit}", advice)
 
 
+def positive_findings(kind: str, numbers: Mapping[str, float | None]) -> Iterator[Finding]:
+    """Return a finding for each number that is not positive; None is accepted.
+
+    >>> [str(each) for each in positive_findings("notch", {"damping": 0.0})]
+    ['notch: damping must be positive (got 0). Use a positive number.']
+    """
+    for name, value in numbers.items():
+        if value is not None and not value > 0.0:
+            yield Finding(kind, f"{name} must be positive (got {value:g})", "Use a positive number")
+
+
 def corner_findings(kind: str, noun: str, corner: float, step: float | None, otherwise: str = "") -> Iterator[Finding]:
     """Return a finding if a corner frequency [Hz] of a law is not below half the sampling rate.
 

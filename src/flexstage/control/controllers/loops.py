@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.arguments import check_arguments
@@ -83,20 +84,12 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
     """
     rows = [COMPONENTS.index(name) for name in coordinates.names]
     scaled = np.real(first_design(found.platform_shapes, 2))[rows] * coordinates.scale[:, None]
-    left = scaled / first_design(found.frequencies, 1)
-    largest = float(np.max(np.linalg.norm(left, axis=0), initial=0.0))
-    chosen: list[int] = []
-    while len(chosen) < len(rows):
-        size = np.linalg.norm(left, axis=0)
-        index = int(np.argmax(size)) if size.size else -1
-        if index < 0 or size[index] <= _DEPENDENT * largest:
-            break
-        chosen.append(index)
-        direction = left[:, index] / size[index]
-        left = left - np.outer(direction, direction @ left)
-    if len(chosen) == len(rows):
-        return tuple(sorted(chosen))
-    what = f"too few independent modes (got {len(chosen)} of {len(found.names)} modes, expected {len(rows)})"
+    triangle, order = scipy.linalg.qr(scaled / first_design(found.frequencies, 1), mode="r", pivoting=True)
+    sizes = np.abs(np.diag(triangle))
+    count = np.count_nonzero(sizes > _DEPENDENT * np.max(sizes, initial=0.0))
+    if count == len(rows):
+        return tuple(sorted(order[: len(rows)].tolist()))
+    what = f"too few independent modes (got {count} of {len(found.names)} modes, expected {len(rows)})"
     raise refuse("modal coordinates", what, "Compute more modes, or close the loops in platform coordinates")
 
 

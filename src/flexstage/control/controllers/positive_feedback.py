@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import require
 from flexstage.base.record import Heading
 from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.controllers.family import Family, Place, tracking_gain, warped
-from flexstage.control.controllers.law import FIVE_DIGITS, corner_findings, law_system, tracking_rate
+from flexstage.control.controllers.law import FIVE_DIGITS, corner_findings, law_system, positive_findings, tracking_rate
 from flexstage.control.systems.system import System
 
 _POSITIONS = (0.25, 0.5, 0.78)
-_FREQUENCIES = (1.0,)
 _DAMPINGS = (0.45, 0.85)
 _PLACED = (0.1, 0.2, 0.3)
 _OF_RATE = 0.4
@@ -44,11 +43,7 @@ class PositiveFeedback:
     tracking: Annotated[float, RATE, FIVE_DIGITS] = 0.0
 
     def __post_init__(self) -> None:
-        require(
-            Finding("positive feedback", f"{name} must be positive (got {value:g})", "Use a positive number")
-            for name, value in (("frequency", self.frequency), ("damping", self.damping))
-            if not value > 0.0
-        )
+        require(positive_findings("positive feedback", {"frequency": self.frequency, "damping": self.damping}))
 
     def system(self, step: float | None = None) -> System:
         """Return the linear system (see `Law`), discretised by Tustin's rule.
@@ -92,34 +87,27 @@ def place_poles(frequency: float, damping: float, static: float = 1.0) -> Positi
 
 
 def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
-    """Design positive position feedback of the first resonance for several static loop gains, filter frequencies and damping ratios."""
-    if place.resonance is None or not place.static > 0.0:
-        return []
-    filters = [
-        PositiveFeedback(share / place.static, ratio * place.resonance, damping)
-        for share in _POSITIONS
-        for ratio in _FREQUENCIES
-        for damping in _DAMPINGS
-    ]
-    return list(_tracking(filters, place, step))
+    """Design positive position feedback of the first resonance for several static loop gains and damping ratios."""
+    return _tracking(
+        place,
+        step,
+        lambda frequency, static: [PositiveFeedback(share / static, frequency, damping) for share in _POSITIONS for damping in _DAMPINGS],
+    )
 
 
 def velocity_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
     """Design positive velocity and position feedback of the first resonance for several damping ratios."""
+    return _tracking(place, step, lambda frequency, static: [place_poles(frequency, damping, static) for damping in _PLACED])
+
+
+def _tracking(place: Place, step: float | None, filters: Callable[[float, float], list[PositiveFeedback]]) -> list[PositiveFeedback]:
+    """Laws whose integrator reaches |C g| = 1 at the crossover, with `filters` for the first resonance [Hz] and the static gain."""
     if place.resonance is None or not place.static > 0.0:
         return []
-    return list(_tracking([place_poles(place.resonance, damping, place.static) for damping in _PLACED], place, step))
-
-
-def _tracking(filters: list[PositiveFeedback], place: Place, step: float | None) -> Iterator[PositiveFeedback]:
-    """Laws whose integrator reaches |C g| = 1 at the crossover."""
     turning = warped(place.frequency, step)
-    for each in filters:
-        if step is not None and each.frequency > _OF_RATE / step:
-            continue
-        gain = tracking_gain(place, turning, each.feedback(1j * turning))
-        if gain is not None:
-            yield PositiveFeedback(each.position, each.frequency, each.damping, each.velocity, gain)
+    usable = [each for each in filters(place.resonance, place.static) if step is None or each.frequency <= _OF_RATE / step]
+    gains = [tracking_gain(place, turning, each.feedback(1j * turning)) for each in usable]
+    return [replace(each, tracking=gain) for each, gain in zip(usable, gains, strict=True) if gain is not None]
 
 
 PPF = Family("positive position feedback", position_laws, notched=False, others="PI with notches, LQG, or force feedback in the legs")

@@ -8,10 +8,11 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import require
 from flexstage.base.number import Array
 from flexstage.base.record import Heading
 from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.controllers.law import positive_findings
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.sampling import bilinear
 from flexstage.control.systems.system import System, block_matrices, connect, static
@@ -40,12 +41,7 @@ class Prefilter(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        given = {"frequency": self.frequency, "damping": self.damping, "lead": self.lead}
-        require(
-            Finding("prefilter", f"{name} must be positive (got {value:g})", "Use a positive number")
-            for name, value in given.items()
-            if value is not None and not 0.0 < value < np.inf
-        )
+        require(positive_findings("prefilter", vars(self)))
 
     def system(self, step: float | None = None) -> System:
         """Return the filter from `reference` to `shaped`, by Tustin's rule (prewarped if `frequency` is below 0.4 of the sampling rate)."""

@@ -12,7 +12,15 @@ from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.record import Heading
 from flexstage.base.units.quantity import RATE, TIME
-from flexstage.control.controllers.law import FIVE_DIGITS, corner_findings, gain_findings, law_system, slow_tracking_findings, tracking_rate
+from flexstage.control.controllers.law import (
+    FIVE_DIGITS,
+    corner_findings,
+    gain_findings,
+    law_system,
+    positive_findings,
+    slow_tracking_findings,
+    tracking_rate,
+)
 from flexstage.control.systems.system import System
 
 
@@ -73,9 +81,7 @@ def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking
     >>> round(control.feedthrough, 9), round(control.gain * control.feedthrough / (200.0 * np.pi), 4)  # 2, and 2^(1/4)
     (2.0, 1.1892)
     """
-    numbers = {"frequency": frequency, "damping": damping, "static gain": static}
-    wrong = [name for name, value in numbers.items() if not value > 0.0]
-    require(Finding("resonance", f"{name} must be positive (got {numbers[name]:g})", "Use a positive number") for name in wrong)
+    require(positive_findings("resonance", {"frequency": frequency, "damping": damping, "static gain": static}))
     ratio = 1.0 + 2.0 * damping
     feedthrough = static * ratio**2 / (ratio**2 - 1.0)
     return IntegralResonant(2.0 * math.pi * frequency * math.sqrt(ratio) / feedthrough, feedthrough, tracking)

@@ -100,15 +100,14 @@ def _leak(leg: Leg, drive: ChargeDrive) -> System:
 
 def describe_charge(given: Plant, model: LinearModel, charged: LinearModel, drives: Mapping[str, ChargeDrive]) -> ChargedStacks:
     """Compare the modes of a plant at constant voltage (`model`) and at constant charge (`charged`)."""
-    pairs = pair_modes(charged, model)
-    place = [int(np.argmin(np.abs(pairs.frequencies - each))) for each in given.frequencies]
+    pairs = pair_modes(charged, model).nearest(given.frequencies)
     every = drives.values()
     return ChargedStacks(
         actuators=tuple(drives),
         stiffer=np.array([each.stiffening for each in every]),
         corners=np.array([each.corner for each in every]),
         residual_hysteresis=np.array([each.residual_hysteresis for each in every]),
-        by_volts=pairs.others[place],
-        by_charge=pairs.frequencies[place],
+        by_volts=pairs.others,
+        by_charge=pairs.frequencies,
         drives=drives,
     )

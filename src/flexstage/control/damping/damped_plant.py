@@ -129,16 +129,19 @@ def around_legs(
 
 def with_series_stiffness(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
     """Return the legs with the effective stiffness of stack and hinges in series: tension divided by stroke far above the plant's modes."""
-    forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
     slow = np.array([not name.startswith("amplifier.") for name in given.states])
-    direct = np.diag(residualise(forces, slow).D)
+    direct = np.diag(residualise(_forces(given, legs), slow).D)
     return tuple(replace(each, stiffness=abs(float(value))) for each, value in zip(legs, direct, strict=True))
 
 
 def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
     """Return the signs (1 or -1) that convert link forces to tensions: a positive stroke reduces the tension."""
-    static = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs]).transfer(np.zeros(1))[0].real
-    return [-float(np.sign(value)) for value in np.diag(static)]
+    return [-float(np.sign(value)) for value in np.diag(_forces(given, legs).transfer(np.zeros(1))[0].real)]
+
+
+def _forces(given: Plant, legs: tuple[Leg, ...]) -> System:
+    """System from the legs' strokes to their link forces."""
+    return select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
 
 
 def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains: Array) -> Array:
@@ -169,8 +172,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
     gains = scale * np.geomspace(_FIRST, _LAST, _GAINS)
     poles = follow_poles(given, law, legs, gains)
     ratios = np.min(_ratios(poles[:, dominant]), axis=1)
-    steady = [close_damping(given, replace(law, gain=float(gain)), legs).system.growth < 0.0 for gain in (gains[0],)]
-    if not steady[0]:
+    if close_damping(given, replace(law, gain=float(gains[0])), legs).system.growth >= 0.0:
         raise refuse(
             "damping",
             f"the inner loops are unstable even at a gain of {gains[0]:.3g} 1/s",
@@ -200,18 +202,18 @@ def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tupl
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []
-    for frequency, ratio, pole in zip(given.frequencies, given.ratios, poles, strict=True):
-        zero = float(pairs.others[np.argmin(np.abs(pairs.frequencies - frequency))])
-        alone = damping_of_pair(law, float(frequency), zero)
+    columns = (given.frequencies, given.ratios, pairs.nearest(given.frequencies).others)
+    for frequency, ratio, zero, pole in zip(*(each.tolist() for each in columns), poles, strict=True):
+        alone = damping_of_pair(law, frequency, zero)
         modes.append(
             DampedMode(
-                frequency=float(frequency),
-                ratio=float(ratio),
+                frequency=frequency,
+                ratio=ratio,
                 zero=zero,
                 damped_frequency=float(np.abs(pole)) / (2.0 * np.pi),
                 damped_ratio=float(_ratios(pole)),
                 alone=float(_ratios(np.array(alone))),
-                most=most_damping(float(frequency), zero),
+                most=most_damping(frequency, zero),
             )
         )
     lines = np.append(0.0, np.geomspace(_SLOW * given.frequencies[0], 0.5 * given.frequencies[0], _LINES))

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import require
 from flexstage.base.number import Array
+from flexstage.control.controllers.law import positive_findings
 from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
@@ -31,11 +32,7 @@ class ForceFeedback:
     delay: float = 0.0
 
     def __post_init__(self) -> None:
-        require(
-            Finding("force feedback", f"{name} must be positive (got {value:g})", "Use a positive number")
-            for name, value in (("gain", self.gain), ("corner", self.corner), ("lag", self.lag))
-            if not value > 0.0
-        )
+        require(positive_findings("force feedback", {"gain": self.gain, "corner": self.corner, "lag": self.lag}))
 
     @property
     def numerator(self) -> Array:

@@ -96,6 +96,11 @@ class Pairs:
     frequencies: Array
     others: Array
 
+    def nearest(self, frequencies: Array) -> Pairs:
+        """Return the pairs nearest to frequencies (m,) [Hz] of the first model."""
+        places = np.argmin(np.abs(self.frequencies - frequencies[:, None]), axis=1)
+        return Pairs(self.frequencies[places], self.others[places])
+
 
 def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
     """Pair modes with the legs' axial stiffness and modes without, by the mass-weighted similarity of their shapes.

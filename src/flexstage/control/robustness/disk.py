@@ -12,7 +12,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, Heading, Layout
 from flexstage.base.units.quantity import ANGLE, FREQUENCY
-from flexstage.control.robustness.singular import balance, lower_bound, upper_bound
+from flexstage.control.robustness.singular import balance, lower_bound, scaled, upper_bound
 from flexstage.control.robustness.stability import require_stable
 from flexstage.control.systems.closed import Loop, LoopBreak, open_at, open_everywhere
 from flexstage.control.systems.curves import dense_frequencies, sensitivity
@@ -116,14 +116,10 @@ def _shift(own: System, skew: float) -> System:
     return replace(own, D=own.D + 0.5 * (skew - 1.0) * np.eye(len(own.D)))
 
 
-def _scale(matrices: Array, logs: Array) -> Array:
-    return matrices * np.exp(logs[..., :, None] - logs[..., None, :])
-
-
 def _search_bounds(moved: System, frequencies: Array) -> tuple[float, float, float]:
     """Highest upper and lower bounds, and the frequency of the lower bound: local maxima over frequency, refined."""
     matrices = moved.sweep(frequencies)
-    sizes = np.linalg.svd(_scale(matrices, balance(matrices)), compute_uv=False)[:, 0]
+    sizes = np.linalg.svd(scaled(matrices, balance(matrices)), compute_uv=False)[:, 0]
     padded = np.concatenate([[-1.0], sizes, [-1.0]])
     tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
     lowest, highest, place = 0.0, 0.0, np.nan
@@ -173,7 +169,7 @@ def _guaranteed_level(moved: System, frequencies: Array, level: float) -> tuple[
             level, open_ = size * (1.0 + _SLACK), [*open_, (low, high)]
             continue
         scale = np.exp(logs)
-        system = replace(plane.system, B=plane.system.B / scale, C=plane.system.C * scale[:, None], D=_scale(plane.system.D, logs))
+        system = replace(plane.system, B=plane.system.B / scale, C=plane.system.C * scale[:, None], D=scaled(plane.system.D, logs))
         crossings = _true_crossings(replace(plane, system=system), moved, logs, level)
         below, above = crossings[crossings < middle], crossings[crossings > middle]
         left, right = max(below, default=-np.inf), min(above, default=np.inf)
@@ -184,7 +180,7 @@ def _guaranteed_level(moved: System, frequencies: Array, level: float) -> tuple[
 def _true_crossings(plane: Plane, moved: System, logs: Array, level: float) -> Array:
     """Frequencies where a singular value equals the level; eigenvalues near the axis add false ones."""
     found = level_crossings(plane, level)
-    sizes = np.linalg.svd(_scale(moved.sweep(found), logs), compute_uv=False)
+    sizes = np.linalg.svd(scaled(moved.sweep(found), logs), compute_uv=False)
     return found[np.min(np.abs(sizes / level - 1.0), axis=1) < _TRUE]
 
 

@@ -50,37 +50,31 @@ class LoopLines:
         place = int(np.argmax(peaks))
         own = np.diagonal(sensitivity, axis1=1, axis2=2)
         loops = [1.0 / each - 1.0 for each in own.T]
-        gains, turns = [_gains(each) for each in loops], [_turns(self.lines, each) for each in loops]
-        return ResponseMargins(
-            np.abs(own),
-            float(peaks[place]),
-            float(self.lines[place]),
-            tuple(low for low, _ in gains),
-            tuple(high for _, high in gains),
-            tuple(phase for phase, _ in turns),
-            tuple(delay for _, delay in turns),
-            tuple(_rises(self.lines, np.abs(each)) for each in own.T),
-        )
+        lows, gains = zip(*map(_gains, loops), strict=True)
+        phases, delays = zip(*(_turns(self.lines, each) for each in loops), strict=True)
+        rejections = tuple(_rises(self.lines, np.abs(each)) for each in own.T)
+        return ResponseMargins(np.abs(own), float(peaks[place]), float(self.lines[place]), lows, gains, phases, delays, rejections)
 
 
 def _gains(own: Array) -> tuple[float, float]:
-    """Nearest factors below and above 1 at which L crosses -1/k, interpolated linearly in the complex plane."""
-    places = np.flatnonzero(np.imag(own[:-1]) * np.imag(own[1:]) < 0.0)
-    share = np.imag(own[places]) / (np.imag(own[places]) - np.imag(own[places + 1]))
-    real = np.real(own[places]) * (1.0 - share) + np.real(own[places + 1]) * share
+    """Nearest factors below and above 1 at which L crosses -1/k."""
+    (real,) = _at_crossings(np.imag(own), np.real(own))
     factors = -1.0 / real[real < 0.0]
     return float(np.max(factors[factors < 1.0], initial=0.0)), float(np.min(factors[factors > 1.0], initial=np.inf))
 
 
 def _turns(lines: Array, own: Array) -> tuple[float, float]:
     """Smallest phase [rad] of either sign, and delay [s], that move L with |L| = 1 to -1."""
-    sizes = np.log(np.maximum(np.abs(own), _NOTHING))
-    places = np.flatnonzero(sizes[:-1] * sizes[1:] < 0.0)
-    share = sizes[places] / (sizes[places] - sizes[places + 1])
-    between = own[places] * (1.0 - share) + own[places + 1] * share
-    frequencies = lines[places] * (1.0 - share) + lines[places + 1] * share
+    between, frequencies = _at_crossings(np.log(np.maximum(np.abs(own), _NOTHING)), own, lines)
     delays = np.mod(np.angle(-between), 2.0 * np.pi) / (2.0 * np.pi * frequencies)
     return float(np.min(np.abs(np.angle(-between)), initial=np.inf)), float(np.min(delays, initial=np.inf))
+
+
+def _at_crossings(values: Array, *curves: Array) -> list[Array]:
+    """Curves where values change sign, interpolated linearly."""
+    places = np.flatnonzero(values[:-1] * values[1:] < 0.0)
+    share = values[places] / (values[places] - values[places + 1])
+    return [each[places] * (1.0 - share) + each[places + 1] * share for each in curves]
 
 
 def _rises(lines: Array, sizes: Array) -> float:

@@ -32,13 +32,18 @@ def balance(matrices: Array) -> Array:
     return logs - np.mean(logs, axis=-1, keepdims=True)
 
 
+def scaled(matrices: Array, logs: Array) -> Array:
+    """Scale matrices (..., n, n) to e^{d_i} M_ij e^{-d_j} for the logarithms d (..., n)."""
+    return matrices * np.exp(logs[..., :, None] - logs[..., None, :])
+
+
 def scaled_size(matrix: Array, logs: Array) -> float:
     """Compute the largest singular value of e^{d_i} M_ij e^{-d_j} for the logarithms d.
 
     >>> scaled_size(np.array([[0.0, 4.0], [1.0, 0.0]]), np.array([-0.5, 0.5]) * np.log(2.0))
     2.0
     """
-    return float(np.linalg.svd(matrix * np.exp(logs[:, None] - logs[None, :]), compute_uv=False)[0])
+    return float(np.linalg.svd(scaled(matrix, logs), compute_uv=False)[0])
 
 
 def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
@@ -63,7 +68,7 @@ def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
 
 
 def _smooth(logs: Array, matrix: Array, power: float) -> tuple[float, Array]:
-    left, sizes, right = np.linalg.svd(matrix * np.exp(logs[:, None] - logs[None, :]))
+    left, sizes, right = np.linalg.svd(scaled(matrix, logs))
     relative = np.maximum(sizes / max(sizes[0], 1e-300), 1e-300) ** (2.0 * power)
     weights = relative / np.sum(relative)
     value = np.log(max(sizes[0], 1e-300)) + 0.5 * np.log(np.sum(relative)) / power

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -157,12 +158,11 @@ def _left(A: Array, pole: complex) -> Array:
     return vectors[:, int(np.argmin(np.abs(values - pole)))].conj()
 
 
-def _participation_by_owner(closed: Loop, parts: Array) -> dict[str, float]:
+def _participation_by_owner(closed: Loop, parts: Array) -> Counter[str]:
     """Participations summed by owner of the states."""
-    result: dict[str, float] = {}
-    for name, part in zip(closed.states, parts, strict=True):
-        owner = _owner(closed, name)
-        result[owner] = result.get(owner, 0.0) + float(part)
+    result = Counter[str]()
+    for name, part in zip(closed.states, parts.tolist(), strict=True):
+        result[_owner(closed, name)] += part
     return result
 
 

@@ -121,9 +121,9 @@ def _phases(found: Curves, number: int) -> tuple[Edge, Edge]:
     places, own = found.crossings(lambda own: np.real(own) - 0.5, number)
     turns = np.angle(-(1.0 / own - 1.0))
     delays = (turns % (2.0 * np.pi)) / (2.0 * np.pi * places)
-    phase = min(zip(np.abs(turns).tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
-    delay = min(zip(delays.tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
-    return Edge(*phase), (Edge(0.0, np.inf) if _has_direct_gain(found.response.D[number, number], found.response.step) else Edge(*delay))
+    limits = (zip(each.tolist(), places.tolist(), strict=True) for each in (np.abs(turns), delays))
+    phase, delay = (Edge(*min(each, default=(np.inf, np.nan))) for each in limits)
+    return phase, (Edge(0.0, np.inf) if _has_direct_gain(found.response.D[number, number], found.response.step) else delay)
 
 
 def _has_direct_gain(own: complex, step: float | None) -> bool:

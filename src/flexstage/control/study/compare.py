@@ -207,21 +207,22 @@ def compare_controllers(
 _Came: TypeAlias = "ComparedController | tuple[Finding, ...]"
 
 
-def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, LoopSetup], workers: int) -> Iterator[tuple[str, _Came]]:
+def _every(
+    one: Callable[[Line | None, str, LoopSetup], _Came], rivals: Mapping[str, LoopSetup], workers: int
+) -> Iterator[tuple[str, _Came]]:
     """Results of all kinds, as completed; optimised kinds first, because they take longest."""
     slowest = sorted(rivals, key=lambda name: rivals[name].controller.kind not in SEARCHED)
     if not workers:
-        yield from ((name, one(None, rivals[name])) for name in slowest)
+        yield from ((name, one(None, name, rivals[name])) for name in slowest)
         return
-    names = {id(rivals[name]): name for name in slowest}
     try:
-        for (asked,), found in results(one, [(rivals[name],) for name in slowest], min(workers, len(rivals))):
-            yield names[id(asked)], found
+        for (name, _), found in results(one, [(name, rivals[name]) for name in slowest], min(workers, len(rivals))):
+            yield name, found
     except CallError as failed:
         if failed.error is not None:
             raise failed.error from None
         what = "processes terminated repeatedly"
-        raise refuse(f"controller {names[id(failed.arguments[0])]}", what, "Free memory, and run the command again") from None
+        raise refuse(f"controller {failed.arguments[0]}", what, "Free memory, and run the command again") from None
 
 
 def _rival_of(
@@ -230,6 +231,7 @@ def _rival_of(
     solid: FeaModes | None,
     test: Identification | None,
     _line: Line | None,
+    _name: str,
     asked: LoopSetup,
 ) -> _Came:
     """Result of a kind, or the findings of its failure."""

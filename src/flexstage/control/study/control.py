@@ -24,7 +24,7 @@ from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
 from flexstage.control.study.resolve import ResolvedSetup
-from flexstage.control.study.setup import GAINS, ControllerSetup, LoopNumbers, NotchSetup, PrefilterSetup
+from flexstage.control.study.setup import GAINS, ControllerSetup, LoopNumbers, NotchSetup
 from flexstage.control.systems.system import System, static
 from flexstage.control.tuning.find import find
 from flexstage.control.tuning.laws import FAMILIES
@@ -113,7 +113,8 @@ def make_controller(given: ResolvedSetup, gains: Array, known: tuple[Tuning, ...
     asked = given.setup.controller
     forward = gains if Compensation.REFERENCE in given.setup.compensate else None
     if asked.law is ControllerKind.NONE:
-        return Control(_open_loop(given, gains), None, None, gains)
+        loop = given.plant.coordinates
+        return Control(static(gains, loop.motions("reference."), loop.commands("command."), given.step), None, None, gains)
     loops = _loops(given, gains)
     if asked.stated:
         made_of = _of_numbers(given, loops, forward)
@@ -134,12 +135,6 @@ def make_controller(given: ResolvedSetup, gains: Array, known: tuple[Tuning, ...
     return Control(found.controller.system(given.step), found.controller, found, gains)
 
 
-def _open_loop(given: ResolvedSetup, gains: Array) -> System:
-    """Strokes for the reference, without feedback."""
-    loop = given.plant.coordinates
-    return static(gains, loop.motions("reference."), loop.commands("command."), given.step)
-
-
 def _loops(given: ResolvedSetup, gains: Array) -> Loops:
     loop = given.plant.coordinates
     if given.setup.controller.coordinates is Axes.ACTUATOR:
@@ -157,7 +152,8 @@ def _of_numbers(given: ResolvedSetup, loops: Loops, forward: Array | None) -> De
     own = {name: each for each in asked.loops for name in each.axes}
     numbers = [own.get(name, LoopNumbers((name,))) for name in loops.names]
     notches = tuple(tuple(_notch(stated, given) for stated in (*asked.notches, *each.notches)) for each in numbers)
-    prefilters = tuple(_prefilter(each.prefilter or asked.prefilter) for each in numbers)
+    stated = (each.prefilter or asked.prefilter for each in numbers)
+    prefilters = tuple(each and Prefilter(**vars(each)) for each in stated)
     return Decentralised(
         loops=loops,
         laws=tuple(_law(asked, each) for each in numbers),
@@ -190,17 +186,13 @@ def _law(asked: ControllerSetup, own: LoopNumbers) -> PI | PID:
     return PID(proportional or 0.0, integral or 0.0, derivative or 0.0, corner or _FILTER)
 
 
-def _prefilter(stated: PrefilterSetup | None) -> Prefilter | None:
-    return None if stated is None else Prefilter(stated.frequency, stated.damping, stated.lead)
-
-
 def _notch(stated: NotchSetup, given: ResolvedSetup) -> Notch:
     """Notch as specified; without a depth it cancels the nearest mode."""
+    width = {} if stated.damping is None else {"damping": stated.damping}
     if stated.depth is not None:
-        return Notch(stated.frequency, stated.depth) if stated.damping is None else Notch(stated.frequency, stated.depth, stated.damping)
+        return Notch(stated.frequency, stated.depth, **width)
     nearest = int(np.argmin(np.abs(given.plant.frequencies - stated.frequency)))
-    ratio = float(given.plant.ratios[nearest])
-    return notch_of_mode(stated.frequency, ratio) if stated.damping is None else notch_of_mode(stated.frequency, ratio, stated.damping)
+    return notch_of_mode(stated.frequency, float(given.plant.ratios[nearest]), **width)
 
 
 def _expected_noise(given: ResolvedSetup) -> Disturbances:

@@ -16,7 +16,7 @@ from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import TIME
 from flexstage.control.plant_models.coordinates import Coordinates
-from flexstage.control.study.setup import AxisAmplitudes, FileMotion, RasterMotion, SineMotion, SpiralMotion, StepMotion, TrajectorySetup
+from flexstage.control.study.setup import AxisAmplitudes, RasterMotion, SineMotion, SpiralMotion, StepMotion, TrajectorySetup
 from flexstage.control.trajectory.check import reach_findings, speed_findings
 from flexstage.control.trajectory.path import Trajectory, reference
 from flexstage.control.trajectory.profile import Limits
@@ -109,17 +109,9 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[N
         period, end = 1.0 / commanded.frequency, commanded.periods / commanded.frequency
         yield NamedTrajectory("sine", sine, None, period, (_FADED * period, end), end)
     else:
-        yield _course_of_file(commanded)
-
-
-def _course_of_file(commanded: FileMotion) -> NamedTrajectory:
-    table = from_file(commanded.file)
-    return NamedTrajectory("file", table, _plane(table.coordinates))
-
-
-def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
-    lengths = [name for name in names if not name.startswith("r")]
-    return (lengths[0], lengths[1]) if len(lengths) > 1 else None
+        table = from_file(commanded.file)
+        first, *others = [name for name in table.coordinates if not name.startswith("r")] or [""]
+        yield NamedTrajectory("file", table, (first, others[0]) if others else None)
 
 
 def stated_motions(by: AxisAmplitudes) -> dict[str, float]:

@@ -18,7 +18,7 @@ from flexstage.control.damping.damped_plant import (
     with_series_stiffness,
 )
 from flexstage.control.damping.force_feedback import ForceFeedback
-from flexstage.control.damping.legs import Leg, Pairs, pair_zeros
+from flexstage.control.damping.legs import Leg, pair_zeros
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.plant_models.reduction import reduce_modes
 from flexstage.control.study.setup import DampingSetup
@@ -40,7 +40,11 @@ def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], 
     sensed = tuple(replace(each, noise=asked.noise) for each in legs) if asked.noise is not None else legs
     legs = with_series_stiffness(reduce_modes(plant, np.zeros(len(plant.frequencies), bool)), sensed)
     lags = [each for each in (asked.lag, *(leg.lag for leg in sensed)) if each is not None]
-    corner = asked.corner if asked.corner is not None else _CORNER * _lowest_zero(plant, pairs)
+    corner = (
+        asked.corner
+        if asked.corner is not None
+        else _CORNER * float(np.min(pairs.nearest(plant.frequencies[dominant_modes(plant)]).others))
+    )
     law = ForceFeedback(asked.gain or 1.0, corner, asked.order, min(lags, default=np.inf), _delay(asked))
     if asked.gain is None:
         law = replace(law, gain=gain_for(plant, law, legs, asked.ratio or _USUAL))
@@ -67,9 +71,3 @@ def _rate_findings(inner: float | None, outer: float | None) -> Iterator[Finding
     if abs(inner / (turns * outer) - 1.0) > _WHOLE:
         what = f"must be a multiple of the loop's sampling rate (got {inner:.6g} Hz, {inner / outer:.6g} times {outer:.6g} Hz)"
         yield Finding("damping.rate", what, f"Use {turns * outer:.6g} Hz")
-
-
-def _lowest_zero(plant: Plant, pairs: Pairs) -> float:
-    """Lowest transmission zero [Hz] without the legs' stiffness, of the modes with the largest residues."""
-    lowest = (pairs.others[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[dominant_modes(plant)])
-    return float(min(lowest))

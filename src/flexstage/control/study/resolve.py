@@ -122,7 +122,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
     highest = highest_platform_mode(mechanism, moving, len(kinematics.coordinates))
     rate = setup.rate if setup.rate is not None else default_rate(highest)
     delay = setup.delay if setup.delay is not None else 1.0 / rate
-    require([*_rate_findings(rate, highest), *_delay_findings(delay * rate)])
+    require(_timing_findings(rate, highest, delay * rate))
     given = _hardware(mechanism, setup, rate, delay)
     sensed = () if setup.damping is None else legs(mechanism, moving, setup.damping.gauges)
     links = tuple(dict.fromkeys((*(each.sensed for each in sensed), *(each.link for each in charged))))
@@ -275,13 +275,11 @@ def round_up(value: float) -> float:
     return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= value * (1.0 - 1e-9)))
 
 
-def _rate_findings(rate: float, highest: float) -> Iterator[Finding]:
+def _timing_findings(rate: float, highest: float, samples: float) -> Iterator[Finding]:
     if rate < _LEAST_OVER_HIGHEST * highest:
         what = f"sampling at {rate:g} Hz is only {rate / highest:.3g} times the highest platform mode of {highest:.4g} Hz"
         yield Finding("rate", what, f"Use at least {_LEAST_OVER_HIGHEST * highest:.4g} Hz, preferably {_OVER_HIGHEST * highest:.0f} Hz")
 
-
-def _delay_findings(samples: float) -> Iterator[Finding]:
     if samples > _MOST_LATE:
         what = f"too long (got {samples:.4g} samples, expected {_MOST_LATE} or less)"
         yield Finding("delay", what, "Reduce delay, or use a lower sampling rate")

@@ -250,9 +250,8 @@ def _with_heat(given: ResolvedSetup, run: Run) -> Run:
             continue
         rms = float(np.sqrt(np.mean(run.simulated.given[:, number] ** 2)))
         ends = [float(each.held) for each in part.limits if each.held is not None]
-        power, warming = part.loss(rms), part.warming(rms)
-        told = (None if power is None else float(power), None if warming is None else float(warming))
-        heat[channel.name] = CoilHeat(rms, channel.unit, min(ends, default=None), *told)
+        losses = (None if each is None else float(each) for each in (part.loss(rms), part.warming(rms)))
+        heat[channel.name] = CoilHeat(rms, channel.unit, min(ends, default=None), *losses)
         if ends and rms > min(ends):
             most = f"{min(ends):.3g} {channel.unit} or less"
             what = f"the rms input of {channel.name} is too large (got {rms:.3g} {channel.unit}, expected {most})"

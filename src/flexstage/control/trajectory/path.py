@@ -33,11 +33,12 @@ class Trajectory(Protocol):
         ...
 
 
-def require_positive(where: str, numbers: Mapping[str, float | None]) -> None:
-    """Raise `DesignError` for values that are not positive and finite; None is accepted."""
-    wrong = {name: value for name, value in numbers.items() if value is not None and not 0.0 < value < np.inf}
+def require_positive(where: str, numbers: Mapping[str, float]) -> None:
+    """Raise `DesignError` for values that are not positive and finite."""
     require(
-        Finding(f"{where}{name}", f"must be positive (got {value:g})", "Use a positive, finite number") for name, value in wrong.items()
+        Finding(f"{where}{name}", f"must be positive (got {value:g})", "Use a positive, finite number")
+        for name, value in numbers.items()
+        if not 0.0 < value < np.inf
     )
 
 
