@@ -175,8 +175,8 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
     if not residues.inputs:
         return ()
     both = residues.theory, residues.measured
-    theory, measured = map(_columns, both)
-    rows, measured_rows = (_columns(np.swapaxes(each, 1, 2)) for each in both)
+    theory, measured = (each.reshape(-1, len(residues.inputs)) for each in both)
+    rows, measured_rows = (np.swapaxes(each, 1, 2).reshape(-1, len(residues.outputs)) for each in both)
     if not theory.size or len(theory) < _FEWEST:
         return ()
     likeness, outputs = _correlations(theory, measured), _correlations(rows, measured_rows)
@@ -191,11 +191,6 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
         found += _scale_doubts(residues.inputs, *_ratios(theory, measured, residues.inputs_known))
         found += _scale_doubts(residues.outputs, *_ratios(rows, measured_rows, np.ones(len(residues.outputs), dtype=bool)))
     return tuple(found)
-
-
-def _columns(values: Array) -> Array:
-    """Every channel of the last axis as one vector, each group of modes scaled to the model's size."""
-    return values.reshape(-1, values.shape[2])
 
 
 def _correlations(theory: Array, measured: Array) -> Array:

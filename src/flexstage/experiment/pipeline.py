@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, TypeAlias
 
@@ -75,12 +75,12 @@ def usable_measurement(
     >>> [each.duration for each in usable_measurement([one_mode_record()])]
     [64.0]
     """
-    wanted = requirements if requirements is not None else RecordRequirements()
+    wanted = requirements or RecordRequirements()
+    for responses in contents:
+        if isinstance(responses, Responses):
+            require(_mixed_kinds(contents))
+            return _sound_responses(responses, accept_faults, wanted)
     records = [each for each in contents if isinstance(each, Record)]
-    responses = [each for each in contents if isinstance(each, Responses)]
-    if responses:
-        require(_mixed_kinds(contents))
-        return _sound_responses(responses[0], accept_faults, wanted)
     findings: list[Finding] = []
     kept: list[Record] = []
     for index, record in enumerate(records):
@@ -103,10 +103,8 @@ def identification(test: Measurement, search: Search = _DEFAULT) -> Identificati
     """
     if search.excitation is not Excitation.RECORDED or isinstance(test, Responses):
         with part(_LOOKED, 1.0, "finding modes"):
-            return Identification(
-                test, identify(test, search) if search.excitation is Excitation.RECORDED else _without_inputs(test, search)
-            )
-    segments = search.segments if search.segments is not None else choose_segments(test)
+            return Identification(test, (identify if search.excitation is Excitation.RECORDED else _without_inputs)(test, search))
+    segments = search.segments or choose_segments(test)
     with part(_LOOKED, _SPECTRA, "spectra"):
         parts = each_part(lambda record: spectra(record, segments), test)
     with part(_SPECTRA, 1.0, "finding modes"):
@@ -135,10 +133,8 @@ def _sound_responses(responses: Responses, accept_faults: frozenset[FaultToleran
     return responses.select(rows, columns)
 
 
-def _mixed_kinds(contents: Sequence[Record | Responses]) -> list[Finding]:
-    if len(contents) == 1:
-        return []
-    kinds = ", ".join(f"{each.source or each.name or 'one'}: {'record' if isinstance(each, Record) else 'responses'}" for each in contents)
-    return [
-        Finding("records", f"responses cannot be combined with other data ({kinds})", "Use several records, or a single file of responses")
-    ]
+def _mixed_kinds(contents: Sequence[Record | Responses]) -> Iterator[Finding]:
+    if len(contents) > 1:
+        kinds = ", ".join(f"{each.source or each.name or 'one'}: {each.kind}" for each in contents)
+        what = f"responses cannot be combined with other data ({kinds})"
+        yield Finding("records", what, "Use several records, or a single file of responses")

@@ -69,9 +69,6 @@ Arrays: TypeAlias = Annotated[
         "Further meanings: rate, step, names, units, frequencies, responses, coherence. Repeatable.",
     ),
 ]
-Kind: TypeAlias = Annotated[
-    str | None, text_option("--kind", "<record|responses>", "Kind of data to read from a file that contains both a record and responses.")
-]
 AcceptFault: TypeAlias = Annotated[
     list[str] | None,
     text_option(
@@ -80,7 +77,6 @@ AcceptFault: TypeAlias = Annotated[
         "Fault to accept: truncated, gaps, dead, clipped, units, dependent, short, slow, names, windowed or incomplete. Repeatable.",
     ),
 ]
-Band: TypeAlias = Annotated[tuple[str, str] | None, band_option("the whole range of the record")]
 Moved: TypeAlias = Annotated[
     Excitation | None,
     word_option(
@@ -88,14 +84,6 @@ Moved: TypeAlias = Annotated[
         Excitation,
         "Excitation of the stage: recorded inputs, floor motion, or free decay. Default: recorded.",
         show_default=False,
-    ),
-]
-FrequencyResolution: TypeAlias = Annotated[
-    str | None,
-    text_option(
-        "--frequency-resolution",
-        "FREQUENCY",
-        'Frequency resolution of the spectra, e.g. "0.5 Hz". Default: chosen according to the length of the record.',
     ),
 ]
 
@@ -110,10 +98,20 @@ class RecordTexts:
     units: Units = None
     rate: Rate = None
     arrays: Arrays = None
-    kind: Kind = None
+    kind: Annotated[
+        str | None,
+        text_option("--kind", "<record|responses>", "Kind of data to read from a file that contains both a record and responses."),
+    ] = None
     accept_fault: AcceptFault = None
-    band: Band = None
-    frequency_resolution: FrequencyResolution = None
+    band: Annotated[tuple[str, str] | None, band_option("the whole range of the record")] = None
+    frequency_resolution: Annotated[
+        str | None,
+        text_option(
+            "--frequency-resolution",
+            "FREQUENCY",
+            'Frequency resolution of the spectra, e.g. "0.5 Hz". Default: chosen according to the length of the record.',
+        ),
+    ] = None
     excitation: Excitation | None = None
 
     def options(self) -> options.Options:

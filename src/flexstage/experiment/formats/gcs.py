@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import refuse
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.table.layout import Layout
 from flexstage.experiment.formats.table.read import complete_rows, read_record
@@ -51,7 +51,9 @@ def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     said = {found["key"]: found["value"] for line in lines if (found := _ENTRY.fullmatch(line.strip()))}
     width = _whole(path, said, "DIM")
     names = number_names(said.get(f"NAME{number}") or f"column {number + 1}" for number in range(width))
-    require(_column_findings(path, said, width))
+    beyond = [key for key in said if re.fullmatch(r"NAME\d+", key) and int(key[4:]) >= width]
+    if beyond:
+        raise refuse(str(path), f"its header has {', '.join(beyond)}, but its DIM is {width}", "Save the recorded data again")
     layout = Layout(names, ("",) * width, _separator(path, said), ".", start, len(lines) + 1, "latin-1", ())
     samples = complete_rows(path, layout, options, _whole(path, said, "NDATA") if "NDATA" in said else None, closed=False)
     about = {"name": _remark(lines), "roles": tuple(_role(name).value for name in names), "rate": options.rate or _rate(path, said)}
@@ -82,12 +84,6 @@ def _separator(path: Path, said: Mapping[str, str]) -> str | None:
         return _SEPARATORS[int(text)]
     known = ", ".join(map(str, _SEPARATORS))
     raise refuse(f"{path}: SEPARATOR", f'unknown separator code (got "{text}", expected one of {known})', "Save it with blanks (32)")
-
-
-def _column_findings(path: Path, said: Mapping[str, str], width: int) -> Iterator[Finding]:
-    beyond = [key for key in said if re.fullmatch(r"NAME\d+", key) and int(key[4:]) >= width]
-    if beyond:
-        yield Finding(str(path), f"its header has {', '.join(beyond)}, but its DIM is {width}", "Save the recorded data again")
 
 
 def _rate(path: Path, said: Mapping[str, str]) -> float:

@@ -98,7 +98,7 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
     require(_findings(made))
     with part(0.0, 1.0 / _PASSES):
         records, tones = zip(*each_part(remove_tones, made), strict=True)
-    chosen = segments if segments is not None else choose_segments(records)
+    chosen = segments or choose_segments(records)
     usable = {id(record): each for record, each in zip(made, known, strict=False) if each.segments == chosen}
     with part(1.0 / _PASSES, 2.0 / _PASSES):
         parts = each_part(lambda record: usable.get(id(record)) or spectra(record, chosen), records)

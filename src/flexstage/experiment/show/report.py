@@ -9,7 +9,6 @@ from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.experiment.comparison import Compared
 from flexstage.experiment.pipeline import Identification
-from flexstage.experiment.records.record import Responses
 from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.experiment.show.sections import (
     coherence_section,
@@ -37,29 +36,22 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
     >>> identify_report(identification((one_mode_record(),)))[:15]
     '<!doctype html>'
     """
-    said = _found_headline(seen)
-    if mechanism is None:
-        return _page("Modes identified in a test", said, None, seen, [None, *_sections(seen)])
-    data = _with_measured(stage_data(mechanism), seen, shapes)
-    sections = [stage_section(data), *_sections(seen, _measured(seen, shapes, data))]
-    return _page("Modes identified in a test", said, mechanism, seen, sections, data=data)
+    data = None if mechanism is None else _with_measured(stage_data(mechanism), seen, shapes)
+    sections = [None if data is None else stage_section(data), *_sections(seen, shapes, data)]
+    return _page("Modes identified in a test", _found_headline(seen), mechanism, seen, sections, data=data)
 
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
     """Write the comparison of model, finite elements and test as an HTML page, followed by the test's data."""
     data = _with_measured(stage_data(mechanism, model=loaded_model(mechanism, found.model)), seen, shapes)
     head = [stage_section(data), compare_section(found), pair_section(found, data)]
-    sections = [*head, *_sections(seen, _measured(seen, shapes, data))]
+    sections = [*head, *_sections(seen, shapes, data)]
     return _page("Theory and experiment", _compared_headline(found), mechanism, seen, sections, data=data)
 
 
 def _with_measured(data: StageData, seen: Identification, shapes: StageShapes | None) -> StageData:
     """Ideal and measured motions of the stage."""
     return data if shapes is None else replace(data, motions=(*data.motions, *measured_motions(seen.found, shapes, data.bones)))
-
-
-def _measured(seen: Identification, shapes: StageShapes | None, data: StageData) -> Section | None:
-    return None if shapes is None else measured_shape_section(seen.found, shapes, data)
 
 
 def _found_headline(seen: Identification) -> Headline:
@@ -82,7 +74,8 @@ def _compared_headline(found: Compared) -> Headline:
     )
 
 
-def _sections(seen: Identification, measured: Section | None = None) -> list[Section | None]:
+def _sections(seen: Identification, shapes: StageShapes | None, data: StageData | None) -> list[Section | None]:
+    measured = None if shapes is None or data is None else measured_shape_section(seen.found, shapes, data)
     return [found_section(seen), measured, response_data_section(seen), coherence_section(seen), stabilisation_section(seen.found)]
 
 
@@ -93,10 +86,9 @@ def _page(
     seen: Identification,
     sections: list[Section | None],
     *,
-    data: StageData | None = None,
+    data: StageData | None,
 ) -> str:
-    sources = [seen.test.source] if isinstance(seen.test, Responses) else [each.source for each in seen.test]
-    named = ", ".join(each for each in sources if each) or "record"
+    named = ", ".join(each.source for each in seen.files if each.source) or "record"
     origin = [("record", named), ("model", "measured"), ("flexstage", __version__)]
     if mechanism is not None:
         origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))

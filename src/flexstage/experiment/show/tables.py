@@ -20,20 +20,18 @@ def recorded_table(test: Sequence[Record] | Responses) -> Table:
     >>> recorded_table((one_mode_record(),)).texts()[1]
     ['record', 'u [V]', 'y [um]', '64 s at 64 Hz']
     """
-    if isinstance(test, Responses):
-        low, high = float(test.frequencies[0]), float(test.frequencies[-1])
-        extent = f"{len(test.frequencies)} frequencies, {number(low)} to {number(high)} Hz"
-        rows = [(_source(test), _channels(test.inputs), _channels(test.outputs), extent)]
-    else:
-        rows = [
-            (_source(each), _channels(each.inputs), _channels(each.outputs), f"{number(each.duration)} s at {number(each.rate)} Hz")
-            for each in test
-        ]
+    rows = [
+        (Cell(each.source or each.name or "record", Mark.STRONG), _channels(each.inputs), _channels(each.outputs), _extent(each))
+        for each in ([test] if isinstance(test, Responses) else test)
+    ]
     return make_table("Recorded data", ["file", "inputs", "outputs", "extent"], rows)
 
 
-def _source(what: Record | Responses) -> Cell:
-    return Cell(what.source or what.name or "record", Mark.STRONG)
+def _extent(what: Record | Responses) -> str:
+    if isinstance(what, Record):
+        return f"{number(what.duration)} s at {number(what.rate)} Hz"
+    low, high = what.band
+    return f"{what.lines} frequencies, {number(low)} to {number(high)} Hz"
 
 
 def _channels(channels: Sequence[Channel]) -> str:

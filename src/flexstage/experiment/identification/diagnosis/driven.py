@@ -104,8 +104,7 @@ class _Local:
 
     def drive(self) -> Drive:
         inputs = self.band.cells.width if self.band.inputs is None else self.band.inputs
-        found = np.array([self._tested(mode, inputs) for mode in range(len(self.near))]).reshape(-1, 2)
-        return Drive(found[:, 0], found[:, 1])
+        return Drive(*np.array([self._tested(mode, inputs) for mode in range(len(self.near))]).reshape(-1, 2).T)
 
     def _tested(self, mode: int, inputs: int) -> tuple[float, float]:
         joined = _Near(*map(np.concatenate, zip(*self.near[mode], strict=True)))
