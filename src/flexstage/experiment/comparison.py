@@ -212,11 +212,12 @@ def compare(
         raise refuse("model", "rigid bodies have no modes", "Use the model lumped or mapped")
     theory = platform_modes(mechanism, linear)
     sensors = shared_sensors(linear, experiment)
-    candidates = _candidates(theory, experiment)
+    every = first_design(theory.frequencies, 1)
+    candidates = _candidates(theory, every, experiment)
+    frequencies = every[list(candidates)]
     seen = _normalise(si_shapes(experiment, sensors), linear, sensors)
     own = _shapes_at_sensors(linear, theory, candidates, sensors)
-    groups = _groups(theory, candidates)
-    frequencies = first_design(theory.frequencies, 1)[list(candidates)]
+    groups = _groups(frequencies, len(theory.platform))
     bases = [(group, _basis(own[:, group])) for group in groups]
     pairs, likeness = _pair(frequencies, experiment, bases, seen)
 
@@ -259,17 +260,15 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
     return found
 
 
-def _candidates(theory: Modes, experiment: Identified) -> tuple[int, ...]:
+def _candidates(theory: Modes, frequencies: Array, experiment: Identified) -> tuple[int, ...]:
     """Candidate modes of the model: the platform's first, then all others within the measured range."""
-    frequencies = first_design(theory.frequencies, 1)
     highest = float(np.exp(_FARTHEST)) * max(experiment.frequencies, default=0.0)
     others = (index for index in range(len(frequencies)) if index not in theory.platform and frequencies[index] < highest)
     return (*theory.platform, *others)
 
 
-def _groups(theory: Modes, candidates: tuple[int, ...]) -> list[list[int]]:
-    """Candidates grouped by subspace, the platform's and others separately, by index."""
-    frequencies, count = first_design(theory.frequencies, 1)[list(candidates)], len(theory.platform)
+def _groups(frequencies: Array, count: int) -> list[list[int]]:
+    """Candidates grouped by subspace, the `count` of the platform and others separately, by index."""
     others = clusters(frequencies[count:], _REPEATED)
     return [*clusters(frequencies[:count], _REPEATED), *([count + index for index in group] for group in others)]
 

@@ -130,9 +130,9 @@ def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, 
     if drive_rms is not None and amount is None:
         what = f'not a displacement, voltage, current, force or torque (got "{drive_rms}")'
         values.findings.append(Finding("--drive-rms", what, 'Use e.g. "1 um", "5 V" or "0.1 A"'))
-    ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
+    low, high = (values.value("--band", text, FREQUENCY) for text in band or (None, None))
     return NoiseDrive(
         **dict([amount] if amount else []),
-        band=None if ends is None or ends[0] is None or ends[1] is None else (ends[0], ends[1]),
+        band=None if low is None or high is None else (low, high),
         actuators=tuple(actuators) if actuators else None,
     )

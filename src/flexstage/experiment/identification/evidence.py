@@ -15,7 +15,7 @@ from flexstage.experiment.progress import each_part, part, report
 from flexstage.experiment.records.record import Channel, Record, Responses, names_of, rising_problem
 from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Window, pool, spectra
 from flexstage.experiment.spectral.growth import noise_growth
-from flexstage.experiment.spectral.lines import Cells, Lines, block_count, in_band, record_lines
+from flexstage.experiment.spectral.lines import Cells, Lines, auto_powers, block_count, in_band, record_lines
 from flexstage.experiment.spectral.smear import SMEARING, WindowLeakage
 from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise_density
 
@@ -151,13 +151,13 @@ def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
 
 def _single_noise(known: Spectra, responses: Responses) -> Array:
     """Noise density (f, p) of outputs without averages: from differences of neighbouring lines, uniform over all lines."""
-    rough = _roughness(responses.frequencies, responses.values) * np.real(np.diagonal(known.xx, axis1=1, axis2=2))[1:-1, None]
+    rough = _roughness(responses.frequencies, responses.values) * auto_powers(known.xx)[1:-1, None]
     return np.repeat(np.median(rough, axis=(0, 2))[None], len(responses.frequencies), axis=0)
 
 
 def _scale(density: Array, rate: float) -> Array:
     """Root mean square per line, zero without signal."""
-    return np.sqrt(np.mean(np.real(np.diagonal(density, axis1=1, axis2=2)), axis=0) * rate / 2.0)
+    return np.sqrt(np.mean(auto_powers(density), axis=0) * rate / 2.0)
 
 
 def _divisor(scale: Array) -> Array:
@@ -266,20 +266,21 @@ def _of_responses(known: Responses) -> Evidence:
 
 def _shape(known: Responses, output_scale: Array) -> Callable[[Cells], Array] | None:
     """Noise over frequency: from coherence, else proportional to the response if the lines show it, else uniform."""
-    if known.coherence is not None:
-        return lambda cells: _coherent_shape(known, cells)
+    coherence = known.coherence
+    if coherence is not None:
+        return lambda cells: _coherent_shape(known, coherence, cells)
     growth = noise_growth(known.frequencies, known.values / output_scale[:, None])
     if not np.any(growth):
         return None
     return lambda cells: 1.0 + growth[:, None] * cells.own_power.T / cells.count
 
 
-def _coherent_shape(known: Responses, cells: Cells) -> Array:
+def _coherent_shape(known: Responses, coherence: Array, cells: Cells) -> Array:
     """Noise level |H|^2 (1 - g^2) / g^2, proportional to an estimate's variance (Bendat & Piersol, ch. 9), at the cells' midpoints.
 
     Running median over 21 lines: a single prominent line is not noise.
     """
-    share = np.clip(known.coherence if known.coherence is not None else np.ones(1), 1e-3, 1.0 - 1e-6)
+    share = np.clip(coherence, 1e-3, 1.0 - 1e-6)
     power = np.abs(known.values) ** 2 * (1.0 - share) / share
     reach = min(_RUNNING, len(power) - 1)
     padded = np.pad(power, ((reach, reach), (0, 0), (0, 0)), mode="reflect")

@@ -205,7 +205,7 @@ def _parts(known: Evidence, found: BandModes) -> int:
 def _measure_drives(known: Evidence, fitted: list[BandModes]) -> list[Drive]:
     """Test whether recorded inputs excite the modes, band by band. Responses have no information on other excitation."""
     if all(each.band.inputs == each.band.cells.width for each in fitted):
-        return [Drive(np.zeros(len(each.modal.poles)), np.zeros(len(each.modal.poles))) for each in fitted]
+        return [Drive(*np.zeros((2, len(each.modal.poles)))) for each in fitted]
     return measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
 
 

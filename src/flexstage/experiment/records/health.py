@@ -154,7 +154,7 @@ def _faults(where: str, problems: Iterable[_Problem]) -> list[Fault]:
 
 def _response_problems(responses: Responses, requirements: RecordRequirements) -> Iterator[_Problem]:
     yield from _units((*responses.outputs, *responses.inputs))
-    yield from _name_faults(responses.inputs, responses.outputs, requirements)
+    yield from _name_faults(responses, requirements)
     frequencies = responses.frequencies
     if (falling := rising_problem(frequencies)) is not None:
         yield None, "", falling, "Export each frequency once, from the lowest to the highest"
@@ -298,12 +298,12 @@ def _roles(record: Record, requirements: RecordRequirements) -> Iterator[_Proble
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
             other = ", or specify the excitation (option excitation)" if kind == "input" else ""
             yield None, "", what, f"Specify the {kind}s (option {kind}s) by names or patterns{other}"
-    yield from _name_faults(record.inputs, record.outputs, requirements)
+    yield from _name_faults(record, requirements)
 
 
-def _name_faults(inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], requirements: RecordRequirements) -> Iterator[_Problem]:
+def _name_faults(test: Record | Responses, requirements: RecordRequirements) -> Iterator[_Problem]:
     """Findings for channels that the stage does not have, and units that contradict the stage's channels."""
-    for kind, channels, expected in (("input", inputs, requirements.inputs), ("output", outputs, requirements.outputs)):
+    for kind, channels, expected in (("input", test.inputs, requirements.inputs), ("output", test.outputs, requirements.outputs)):
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
             if channel.name not in known:

@@ -234,12 +234,11 @@ class Responses(InNotebook, CheckedFields):
         super().__post_init__()
         where = self.where
         expected = (len(self.frequencies), len(self.outputs), len(self.inputs))
-        shapes = {"values": self.values.shape} | ({} if self.coherence is None else {"coherence": self.coherence.shape})
         advice = "Use one value per frequency, output and input"
         wrong = [
-            Finding(f"{where}: {name}", f"wrong shape (got {shape}, expected {expected})", advice)
-            for name, shape in shapes.items()
-            if shape != expected
+            Finding(f"{where}: {name}", f"wrong shape (got {values.shape}, expected {expected})", advice)
+            for name, values in (("values", self.values), ("coherence", self.coherence))
+            if values is not None and values.shape != expected
         ]
         require([*name_findings(where, self.outputs), *name_findings(where, self.inputs), *wrong])
 
@@ -266,10 +265,9 @@ class Responses(InNotebook, CheckedFields):
     @property
     def units(self) -> tuple[tuple[str, ...], ...]:
         """Unit of every entry, by output and input; empty if the unit of the output or of the input is missing."""
-        columns = [channel.unit for channel in self.inputs]
-        ratios = ratio_units(tuple(channel.unit for channel in self.outputs), tuple(columns))
-        stated = ((row, [channel.unit and unit for unit in columns]) for row, channel in zip(ratios, self.outputs, strict=True))
-        return tuple(tuple(ratio if known else "" for ratio, known in zip(row, both, strict=True)) for row, both in stated)
+        rows, columns = (tuple(channel.unit for channel in side) for side in (self.outputs, self.inputs))
+        ratios = zip(rows, ratio_units(rows, columns), strict=True)
+        return tuple(tuple(ratio if above and below else "" for below, ratio in zip(columns, row, strict=True)) for above, row in ratios)
 
     def select(self, rows: Sequence[int], columns: Sequence[int]) -> Responses:
         """Return the responses of the outputs with indices `rows` to the inputs with indices `columns`."""

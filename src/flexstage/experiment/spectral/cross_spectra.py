@@ -16,7 +16,7 @@ from flexstage.base.record import INNER
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Channel, Record, names_of
-from flexstage.experiment.spectral.lines import in_band
+from flexstage.experiment.spectral.lines import auto_powers, in_band
 
 BATCH = 2_000_000
 
@@ -76,7 +76,7 @@ class Spectra:
 
     def driven(self, names: Container[str]) -> Spectra:
         """Return the spectra with only those inputs that are listed in `names` and have power."""
-        power = np.sum(np.real(np.diagonal(self.xx, axis1=1, axis2=2)), axis=0)
+        power = np.sum(auto_powers(self.xx), axis=0)
         kept = np.array([index for index, each in enumerate(self.inputs) if each.name in names and power[index] > 0.0], dtype=int)
         inputs = tuple(self.inputs[index] for index in kept)
         return replace(self, inputs=inputs, xx=self.xx[:, kept[:, None], kept], yx=self.yx[:, :, kept])

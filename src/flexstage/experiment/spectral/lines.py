@@ -57,7 +57,7 @@ class Cells:
     @property
     def own_power(self) -> Array:
         """Power (c, p) of every output in every cell."""
-        return np.real(np.diagonal(self.power, axis1=1, axis2=2))
+        return auto_powers(self.power)
 
     @property
     def width(self) -> int:
@@ -99,6 +99,15 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int
             place = (drive, column) if column < len(inputs) else (outputs, column - len(inputs))
             place[0][:, place[1]] = np.fft.rfft(values - np.mean(values)) / np.sqrt(size)
         yield Lines(np.fft.rfftfreq(size, 1.0 / record.rate), drive, outputs, (*inputs, first + part))
+
+
+def auto_powers(matrices: Array) -> Array:
+    """Return the real diagonals (f, n) of matrices (f, n, n) of powers and cross powers.
+
+    >>> auto_powers(np.array([[[1.0 + 0j, 2j], [-2j, 4.0]]])).tolist()
+    [[1.0, 4.0]]
+    """
+    return np.real(np.diagonal(matrices, axis1=1, axis2=2))
 
 
 def in_band(frequencies: Array, band: tuple[float, float]) -> Array:

@@ -12,7 +12,7 @@ from flexstage.experiment.identification.diagnosis.peaks import PeakCause
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.outputs.tones import remove_tones
 from flexstage.experiment.records.record import Record, names_of
-from flexstage.experiment.spectral.lines import Lines, block_count, record_lines
+from flexstage.experiment.spectral.lines import Lines, auto_powers, block_count, record_lines
 
 _DEGREE, _OVER = 2, 2
 """Degree of the polynomials, and minimum number of lines per coefficient."""
@@ -118,6 +118,6 @@ def _polynomial_fit(away: Array, drive: Array, outputs: Array) -> tuple[Array, A
     inverse = np.linalg.pinv(turned @ rows, rcond=1e-12, hermitian=True)
     fitted = inverse @ (turned @ outputs)
     noise = np.sum(np.abs(outputs - rows @ fitted) ** 2, axis=1) / (number - rows.shape[2])
-    own = np.real(np.diagonal(inverse, axis1=1, axis2=2))[:, :inputs]  # the coefficients of degree zero come first
+    own = auto_powers(inverse)[:, :inputs]  # the coefficients of degree zero come first
     scale = sizes[:, None, :inputs]
     return np.swapaxes(fitted[:, :inputs], 1, 2) / scale, np.sqrt(noise[:, :, None] * own[:, None, :]) / scale

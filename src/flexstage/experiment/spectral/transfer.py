@@ -9,6 +9,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.experiment.records.record import Responses
 from flexstage.experiment.spectral.cross_spectra import Spectra
+from flexstage.experiment.spectral.lines import auto_powers
 
 _DEPENDENT, _NOTHING = 1e-9, 1e-15
 
@@ -27,7 +28,7 @@ def h1(spectra: Spectra) -> Responses:
     """
     require(dependent_inputs(spectra))
     # lines without input, such as the mean's, have no response: a trace of power gives zero
-    trace = _NOTHING * np.real(np.mean(_diagonal(spectra.xx))) * np.eye(spectra.xx.shape[1])
+    trace = _NOTHING * np.real(np.mean(np.diagonal(spectra.xx, axis1=1, axis2=2))) * np.eye(spectra.xx.shape[1])
     values = np.swapaxes(np.linalg.solve(np.swapaxes(spectra.xx + trace, 1, 2), np.swapaxes(spectra.yx, 1, 2)), 1, 2)
     return _responses(spectra, values, "H1")
 
@@ -60,7 +61,7 @@ def spectral_ratio(spectra: Spectra) -> Responses:
     >>> spectral_ratio(example_spectra()).values[3].round(9).real.tolist()
     [[3.0]]
     """
-    return _responses(spectra, spectra.yx / np.real(_diagonal(spectra.xx))[:, None, :], "G_ij/G_ii")
+    return _responses(spectra, spectra.yx / auto_powers(spectra.xx)[:, None, :], "G_ij/G_ii")
 
 
 def ordinary_coherence(spectra: Spectra) -> Array:
@@ -70,7 +71,7 @@ def ordinary_coherence(spectra: Spectra) -> Array:
     >>> ordinary_coherence(example_spectra())[3].round(9).tolist()
     [[1.0]]
     """
-    both = np.real(_diagonal(spectra.yy))[:, :, None] * np.real(_diagonal(spectra.xx))[:, None, :]
+    both = auto_powers(spectra.yy)[:, :, None] * auto_powers(spectra.xx)[:, None, :]
     return _share(np.abs(spectra.yx) ** 2, both)
 
 
@@ -84,7 +85,7 @@ def multiple_coherence(spectra: Spectra) -> Array:
     >>> multiple_coherence(example_spectra())[3].round(9).tolist()
     [1.0]
     """
-    return _share(_explained(spectra), np.real(_diagonal(spectra.yy)))
+    return _share(_explained(spectra), auto_powers(spectra.yy))
 
 
 def noise_density(spectra: Spectra) -> Array:
@@ -94,7 +95,7 @@ def noise_density(spectra: Spectra) -> Array:
     >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)
     True
     """
-    left = np.maximum(np.real(_diagonal(spectra.yy)) - _explained(spectra), 0.0)
+    left = np.maximum(auto_powers(spectra.yy) - _explained(spectra), 0.0)
     free = spectra.independent - spectra.yx.shape[2]
     return left * spectra.independent / max(free, 1.0)
 
@@ -128,10 +129,6 @@ def dependent_inputs(spectra: Spectra) -> list[Finding]:
 def _explained(spectra: Spectra) -> Array:
     """Power densities (f, p) of the outputs that inputs explain."""
     return np.real(np.sum(h1(spectra).values * np.conj(spectra.yx), axis=-1))
-
-
-def _diagonal(matrices: Array) -> Array:
-    return np.diagonal(matrices, axis1=1, axis2=2)
 
 
 def _share(part: Array, whole: Array) -> Array:

@@ -23,6 +23,7 @@ _SHARE = 0.35
 _SKIPPED = 2
 """Lines omitted next to zero, with drift and offset by the window."""
 _FEWEST = 8
+_UNITS = "Use a unit of stroke, voltage, current or force for an input, a unit of length or angle for a gauge; or compare without gains"
 _NEIGHBOURS = 1.94
 """Lines per independent one: Hann's neighbours share (2/3)^2 and (1/6)^2 of their variance on either side."""
 
@@ -69,7 +70,11 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
     channels = {channel.name: channel for channel in (*experiment.inputs, *experiment.outputs)}
     si = {channel.name: channel.unit for channel in (*model.outputs, *model.inputs)}
     sizes = {name: si_size(mechanism, channels[name], si[name]) for name in (*inputs, *outputs)}
-    require(_unit_findings([channels[name] for name, size in sizes.items() if not np.isfinite(size)]))
+    require(
+        Finding(name, f'its unit "{channels[name].unit}" does not fit a gauge or an actuator', _UNITS)
+        for name, size in sizes.items()
+        if not np.isfinite(size)
+    )
     rows = [names_of(experiment.responses.outputs).index(name) for name in outputs]
     columns = [names_of(experiment.responses.inputs).index(name) for name in inputs]
     lines, values = _low_lines(experiment)
@@ -100,17 +105,6 @@ def _extrapolate_to_zero(lines: Array, values: Array) -> tuple[Array, Array]:
     spread = np.sum((flat - powers @ found) ** 2, axis=0) / (len(lines) - powers.shape[1])
     share = np.linalg.inv(powers.T @ powers)[0, 0] * _NEIGHBOURS
     return found[0].reshape(values.shape[1:]), np.sqrt(spread * share).reshape(values.shape[1:])
-
-
-def _unit_findings(channels: list[Channel]) -> list[Finding]:
-    return [
-        Finding(
-            channel.name,
-            f'its unit "{channel.unit}" does not fit a gauge or an actuator',
-            "Use a unit of stroke, voltage, current or force for an input, a unit of length or angle for a gauge; or compare without gains",
-        )
-        for channel in channels
-    ]
 
 
 def is_voltage(unit: str) -> bool:

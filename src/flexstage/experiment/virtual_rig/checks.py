@@ -113,8 +113,7 @@ def _stack_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterator
 def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterator[Finding]:
     own = " or ".join(dict.fromkeys((driven.own.value, *(each.value for each in driven.factors))))
     example = f"1 {RECORDED_UNITS[driven.own]}"
-    requested = (*setup.drive.amounts, *([setup.input_quantity] if setup.input_quantity else []))
-    for quantity in dict.fromkeys(requested):
+    for quantity in filter(None, dict.fromkeys((*setup.drive.amounts, setup.input_quantity))):
         if np.isnan(driven.factor(quantity)):
             yield Finding(name, f"its input is a {own}, not a {quantity.value}", f'Use {own}, for example --drive-rms "{example}"')
     if not setup.drive.amounts and np.isnan(driven.full):

@@ -83,12 +83,13 @@ def unsearched_band(known: Evidence, reach: Reach) -> str | None:
     >>> unsearched_band(evidence(one_mode_record(), None), Reach(2.0, 26.88, (0.5, 20.0)))
     'modes from 0.5 to 20 Hz are requested; the search covers only 2 to 20 Hz. Record longer.'
     """
-    if reach.asked is None or (reach.low <= 1.001 * reach.asked[0] and reach.high >= 0.999 * reach.asked[1]):
+    first, last = reach.asked or (np.inf, -np.inf)
+    if reach.low <= 1.001 * first and reach.high >= 0.999 * last:
         return None
-    low, high = max(reach.low, reach.asked[0]), min(reach.high, reach.asked[1])
+    low, high = max(reach.low, first), min(reach.high, last)
     could = f"the search covers only {low:.4g} to {high:.4g} Hz" if low < high else "the record covers no part of this band"
-    needed = [word for word, missing in (("longer", reach.low > reach.asked[0]), ("faster", known.band[1] < reach.asked[1])) if missing]
-    return f"modes from {reach.asked[0]:g} to {reach.asked[1]:g} Hz are requested; {could}. Record {' and '.join(needed) or 'longer'}."
+    needed = [word for word, missing in (("longer", reach.low > first), ("faster", known.band[1] < last)) if missing]
+    return f"modes from {first:g} to {last:g} Hz are requested; {could}. Record {' and '.join(needed) or 'longer'}."
 
 
 def no_mode_warning(known: Evidence, reach: Reach) -> str:

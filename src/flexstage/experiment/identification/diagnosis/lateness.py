@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.records.record import Channel, Role
+from flexstage.experiment.records.record import Channel
 from flexstage.experiment.records.unit import derivative_order
 from flexstage.experiment.spectral.lines import Lines
 
@@ -29,14 +29,6 @@ class Delay:
 
     value: float
     deviation: float
-
-
-@dataclass(frozen=True)
-class _Single:
-    """Single channel, by its index among the inputs or the outputs."""
-
-    role: Role
-    number: int
 
 
 def common_delay(found: Identified) -> Delay | None:
@@ -69,15 +61,15 @@ def late_channels(found: Identified) -> Iterator[str]:
     """
     if len(_groups(found)) < _ENOUGH:
         return
-    for role, channels in ((Role.OUTPUT, found.outputs), (Role.INPUT, found.inputs)):
+    for axis, (kind, channels) in enumerate((("outputs", found.outputs), ("inputs", found.inputs))):
         if len(channels) < _ENOUGH:
             continue
-        first = [_fit_delay(found, _Single(role, number), least=-np.inf) for number in range(len(channels))]
+        first = [_fit_delay(found, (axis, number), least=-np.inf) for number in range(len(channels))]
         known = [each.value for each in first if each is not None]
         if len(known) < len(channels):
             continue
         usual = float(np.median(known))
-        own = [_fit_delay(found, _Single(role, number), usual, -np.inf) for number in range(len(channels))]
+        own = [_fit_delay(found, (axis, number), usual, -np.inf) for number in range(len(channels))]
         apart = [(channel, each.value - usual, each.deviation) for channel, each in zip(channels, own, strict=True) if each is not None]
         turns = float(np.max(found.frequencies))
         late = [each for each in apart if abs(each[1]) > _CLEAR * each[2] and abs(each[1]) * turns > _NOTICED]
@@ -85,13 +77,13 @@ def late_channels(found: Identified) -> Iterator[str]:
             for channel, by, _ in late:
                 word = "late" if by > 0.0 else "early"
                 yield (
-                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms relative to the other {role.value}s: after correction, the "
+                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms relative to the other {kind}: after correction, the "
                     f"phases of its modal residues agree with those of the others."
                 )
 
 
-def _fit_delay(found: Identified, channel: _Single | None, near: float = 0.0, least: float = _SURE) -> Delay | None:
-    """Delay of the residues, of all or of one channel; `None` if less than `least` deviations from zero.
+def _fit_delay(found: Identified, channel: tuple[int, int] | None, near: float = 0.0, least: float = _SURE) -> Delay | None:
+    """Delay of the residues, of all or of one channel (axis and index); `None` if less than `least` deviations from zero.
 
     Among equally good delays, the one nearest to `near` [s]: signs are free, half turns are no evidence.
     """
@@ -153,7 +145,7 @@ def _groups(found: Identified) -> list[tuple[int, ...]]:
     return [*found.close, *((index,) for index in range(len(found.frequencies)) if index not in together)]
 
 
-def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None) -> tuple[complex, complex, float]:
+def _residue(found: Identified, group: tuple[int, ...], channel: tuple[int, int] | None) -> tuple[complex, complex, float]:
     """Mean square over mean power of a group's residues, or of one channel's (1 if all are imaginary), mean pole, spread of the phase.
 
     The phase of a channel with a small part in the mode is more uncertain.
@@ -164,7 +156,7 @@ def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None)
     residues = (found.shapes[:, chosen] / rates[:, None]) @ (found.participation[chosen] * driven)
     size = np.max(np.abs(found.shapes[:, :, None] * found.participation), axis=1)
     scaled = residues / np.where(size > 0.0, size, 1.0)
-    scaled = scaled if channel is None else np.take(scaled, [channel.number], axis=0 if channel.role is Role.OUTPUT else 1)
+    scaled = scaled if channel is None else np.take(scaled, [channel[1]], axis=channel[0])
     power = float(np.sum(np.abs(scaled) ** 2))
     square = complex(np.sum((scaled / 1j) ** 2)) / power if power else 0.0
     spread = float(np.min(found.frequency_deviations[chosen] / (found.damping[chosen] * found.frequencies[chosen])))
