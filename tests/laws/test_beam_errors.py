@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.beams.elasticity import AXES
 from flexstage.beams.validity import hinge_dimensions, validity
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Profile, Straight
 from flexstage.solid.fea.hinges.hinge import hinge_compliance
 from flexstage.solid.fea.meshing.estimate import Accuracy
+from flexstage.spatial.frame import COMPONENTS
 from tools.validation.beam_errors import COUNTS, sampled
 
 SEED = 2026
@@ -31,7 +31,7 @@ def test_errors_stated_are_right(kind: str, count: int) -> None:
         found = hinge_compliance(part, material, Accuracy(error=0.0, orders=(3, 5), meshes=1, freedoms=40_000 if count == 1 else 130_000))
         beam = hinge_dimensions(part, poisson).beam
         for axis, error in stated.items():
-            index = AXES.index(axis)
+            index = COMPONENTS.index(axis)
             true = beam[index] / found.compliance[index, index] - 1.0
             left = 0.5 * float(np.nan_to_num(found.changes[index], posinf=0.01))
             assert float(error) == pytest.approx(true, abs=0.01 * WITHIN + left), (part, poisson, axis)

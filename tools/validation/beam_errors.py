@@ -16,8 +16,9 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 from flexstage.base.number import Array
-from flexstage.beams.elasticity import AXES, LAWS, HingeDimensions, Numbers
-from flexstage.beams.validity import family_of, hinge_dimensions, validity, within
+from flexstage.beams.compliance import law_of
+from flexstage.beams.elasticity import LAWS, HingeDimensions, Numbers
+from flexstage.beams.validity import hinge_dimensions, validity, within
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -30,6 +31,7 @@ from flexstage.solid.fea.hinges.roots import own_roots
 from flexstage.solid.fea.jobs.hinge_cache import hinges_from_cache
 from flexstage.solid.fea.jobs.parts import Ways
 from flexstage.solid.fea.meshing.estimate import Accuracy
+from flexstage.spatial.frame import COMPONENTS
 
 COUNTS = {
     "notch circular": 48,
@@ -100,13 +102,19 @@ def fitted(family: str, axis: str, slot: HingeDimensions, found: Array) -> Numbe
     """The numbers of a law from elements, robustly (soft L1, 1 %), from those in the code."""
     law, start = LAWS[family][axis]
     inside = within(family, axis, slot)
-    true = found[:, AXES.index(axis)]
+    true = found[:, COMPONENTS.index(axis)]
 
     def off(numbers: Array) -> Array:
         return np.nan_to_num(100.0 * (law(slot, tuple(numbers)) / true - 1.0), nan=1e3)[inside]
 
     scale = np.maximum(np.abs(start), 0.1)
     return tuple(float(f"{value:.4g}") for value in least_squares(off, start, loss="soft_l1", f_scale=1.0, x_scale=scale).x)
+
+
+def _family(part: Shaped) -> str | None:
+    """The family of fitted laws of a part."""
+    own = law_of(part)
+    return own.family(part) if own else None
 
 
 def fits() -> Iterator[str]:
@@ -117,13 +125,13 @@ def fits() -> Iterator[str]:
         own = [
             (hinge_dimensions(part, poisson), found)
             for (part, poisson), found in zip(parts, elements, strict=True)
-            if family_of(part) == family
+            if _family(part) == family
         ]
         slot, found = stacked([each for each, _ in own]), np.stack([each for _, each in own])
         for axis, (law, _) in axes.items():
             numbers = fitted(family, axis, slot, found)
             inside = within(family, axis, slot)
-            off = 100.0 * (law(slot, numbers) / found[:, AXES.index(axis)] - 1.0)[inside]
+            off = 100.0 * (law(slot, numbers) / found[:, COMPONENTS.index(axis)] - 1.0)[inside]
             rms = np.sqrt(np.mean(off**2))
             yield f"{family:7} {axis:2} {numbers}: rms {rms:.2f} %, largest {np.max(np.abs(off)):.2f} % of {len(off)}"
 
@@ -136,8 +144,8 @@ def checks(count: int) -> Iterator[str]:
         beam = hinge_dimensions(part, poisson).beam
         stated = validity(part, material=Material(young=_YOUNG, poisson=poisson, density=1.0)).errors
         for axis, error in stated.items():
-            true = beam[AXES.index(axis)] / found[AXES.index(axis)] - 1.0
-            worst.setdefault((family_of(part) or "", axis), []).append(100.0 * float(error - true))
+            true = beam[COMPONENTS.index(axis)] / found[COMPONENTS.index(axis)] - 1.0
+            worst.setdefault((_family(part) or "", axis), []).append(100.0 * float(error - true))
     for (family, axis), off in worst.items():
         rms, largest = np.sqrt(np.mean(np.square(off))), max(map(abs, off))
         yield f"{family:7} {axis:2} stated less found: rms {rms:.2f}, largest {largest:.2f} points of {len(off)}"

@@ -1,11 +1,9 @@
 """Compliance and mass of parts by beam theory."""
 
 from flexstage.base.register import Register
-from flexstage.beams.amplified import AMPLIFIED, STEPPER
 from flexstage.beams.compliance_matrix import MATRIX
 from flexstage.beams.contact import CONTACT
 from flexstage.beams.cruciform import CRUCIFORM
-from flexstage.beams.force_actuator import FORCE_ACTUATOR
 from flexstage.beams.law import PartLaw
 from flexstage.beams.leaf import LEAF
 from flexstage.beams.membrane import MEMBRANE
@@ -15,8 +13,7 @@ from flexstage.beams.piezo import PIEZO
 from flexstage.beams.reinforced_leaf import REINFORCED_LEAF
 from flexstage.beams.rod import ROD
 from flexstage.beams.shear_piezo import SHEAR_PIEZO
-from flexstage.beams.spring import SPRING
-from flexstage.beams.voice_coil import VOICE_COIL
+from flexstage.beams.stated import STATED
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.contact import Contact
@@ -43,8 +40,7 @@ _HINGES = {
     Membrane: MEMBRANE,
     Cruciform: CRUCIFORM,
 }
-_STATED = {ComplianceMatrix: MATRIX, Spring: SPRING, Contact: CONTACT}
-_STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
-_OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL, RotaryCoil: VOICE_COIL}
+_STATED = dict.fromkeys((Spring, Amplified, SteppingDrive, ForceActuator, VoiceCoil, RotaryCoil), STATED)
+_OWN = {**_HINGES, ComplianceMatrix: MATRIX, Contact: CONTACT, Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, **_STATED}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """Part laws of beam theory, by kind of part."""

@@ -117,10 +117,11 @@ def viscous_damping(part: Part) -> Array | None:
     [2.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
     part_law = law_of(part)
-    if part_law is None or part_law.damping is None:
+    damping = None if part_law is None or part_law.damping is None else part_law.damping(inner(part))
+    if damping is None:
         return None
     kept: Array = np.array([freedom in part.elastic for freedom in ALL]) if isinstance(part, Restricted) else np.ones(6, dtype=bool)
-    own = np.where(kept[:, None] & kept, part_law.damping(inner(part)), 0.0)
+    own = np.where(kept[:, None] & kept, damping, 0.0)
     return own if np.any(own) else None
 
 

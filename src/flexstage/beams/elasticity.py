@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 
 import numpy as np
@@ -20,7 +21,6 @@ import numpy as np
 from flexstage.base.number import Array, Number
 from flexstage.beams.plate import moment_factor, shear_factor
 
-AXES = ("x", "y", "z", "rx", "ry", "rz")
 Numbers = tuple[float, ...]
 
 
@@ -185,11 +185,6 @@ def _plate_share(hinge: HingeDimensions, factor: Callable[[Number, Number], Numb
     return 1.0 - (1.0 - 1.0 / stiffer) / (1.0 + power * hinge.thickness / hinge.width)
 
 
-def leaf_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the transverse compliance of a leaf, including plate action."""
-    return hinge.beam[..., 1] * (1.0 - p[0] * hinge.poisson**2 * _proportions(hinge)[0])
-
-
 def leaf_rx(hinge: HingeDimensions, p: Numbers) -> Array:
     """Compute the torsional compliance of a leaf; restrained contraction at its ends increases its stiffness, most of all if it is wide."""
     wide, _ = _proportions(hinge)
@@ -197,9 +192,9 @@ def leaf_rx(hinge: HingeDimensions, p: Numbers) -> Array:
     return hinge.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
 
 
-def leaf_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the bending compliance of a leaf, including plate action."""
-    return hinge.beam[..., 5] * (1.0 - p[0] * hinge.poisson**2 * _proportions(hinge)[0])
+def leaf_bending(hinge: HingeDimensions, p: Numbers, index: int) -> Array:
+    """Compute the transverse or the bending compliance of a leaf, including plate action."""
+    return hinge.beam[..., index] * (1.0 - p[0] * hinge.poisson**2 * _proportions(hinge)[0])
 
 
 def _proportions(hinge: HingeDimensions) -> tuple[Array, Array]:
@@ -218,10 +213,6 @@ def toroidal(hinge: HingeDimensions, p: Numbers, index: int) -> Array:
     The factor is exp((t/R) (p0 + p1 (t/R)^(1/2) + p2 (nu - 0.3))), with thickness t, radius R, Poisson's ratio nu and coefficients `p`.
     """
     return hinge.beam[..., index] * np.exp(hinge.root**2 * (p[0] + p[1] * hinge.root + p[2] * (hinge.poisson - 0.3)))
-
-
-def _toroid(index: int) -> Law:
-    return lambda hinge, p: toroidal(hinge, p, index)
 
 
 LAWS: Mapping[str, Mapping[str, tuple[Law, Numbers]]] = MappingProxyType(
@@ -250,19 +241,19 @@ LAWS: Mapping[str, Mapping[str, tuple[Law, Numbers]]] = MappingProxyType(
         },
         "leaf": {
             "x": (bar_x, (0.2819, 0.4815)),
-            "y": (leaf_y, (0.02987,)),
+            "y": (partial(leaf_bending, index=1), (0.02987,)),
             "z": (bar_z, (0.3725, 1.626, 0.1195, 0.2543, -0.01614)),
             "rx": (leaf_rx, (0.002352, 0.3073, 0.02046)),
             "ry": (bar_ry, (0.1274, 0.3336)),
-            "rz": (leaf_rz, (0.007913,)),
+            "rz": (partial(leaf_bending, index=5), (0.007913,)),
         },
         "toroid": {
-            "x": (_toroid(0), (0.6781, -0.489, -0.5586)),
-            "y": (_toroid(1), (0.4643, -0.3794, -0.8822)),
-            "z": (_toroid(2), (0.4643, -0.3794, -0.8822)),
-            "rx": (_toroid(3), (0.1361, -0.00781, -0.0001351)),
-            "ry": (_toroid(4), (0.1697, 0.00696, -0.3379)),
-            "rz": (_toroid(5), (0.1697, 0.00696, -0.3379)),
+            "x": (partial(toroidal, index=0), (0.6781, -0.489, -0.5586)),
+            "y": (partial(toroidal, index=1), (0.4643, -0.3794, -0.8822)),
+            "z": (partial(toroidal, index=2), (0.4643, -0.3794, -0.8822)),
+            "rx": (partial(toroidal, index=3), (0.1361, -0.00781, -0.0001351)),
+            "ry": (partial(toroidal, index=4), (0.1697, 0.00696, -0.3379)),
+            "rz": (partial(toroidal, index=5), (0.1697, 0.00696, -0.3379)),
         },
     }
 )

@@ -45,17 +45,9 @@ def ratio(top: Number, bottom: Number) -> Array:
     return np.real(np.asarray(top)) / np.real(np.asarray(bottom))
 
 
-def _no_ranges(_: Any) -> tuple[Range, ...]:
-    return ()
-
-
-def _no_family(_: Any) -> str | None:
-    return None
-
-
 @dataclass(frozen=True)
 class PartLaw:
-    """Law of a kind of part: functions of a part, or of a part and its material. The material is `None` if `needs_material` is false.
+    """Law of a kind of part: functions of a part, or of a part and its material. A `beam` has no material if not `needs_material`.
 
     Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. For plates, `diagonal` (..., 6) replaces the
     beam's compliance. All 6x6 matrices are about the centre. These entries describe a part without a beam:
@@ -81,10 +73,10 @@ class PartLaw:
     stiffness: Callable[[Any], Array] | None = None
     material_stiffness: Callable[[Any, Material], Array] | None = None
     mass: Callable[[Any], Array] | None = None
-    damping: Callable[[Any], Array] | None = None
+    damping: Callable[[Any], Array | None] | None = None
     twisting_load: Callable[[Any, Material], Number] | None = None
     concentration: Callable[[Any], Number | None] | None = None
-    ranges: Callable[[Any], tuple[Range, ...]] = _no_ranges
-    family: Callable[[Any], str | None] = _no_family
+    ranges: Callable[[Any], tuple[Range, ...]] = lambda _: ()
+    family: Callable[[Any], str | None] = lambda _: None
     fixed_end_modes: Callable[[Any, Material, Array], tuple[FixedEndModes, ...]] | None = None
     needs_material: bool = True

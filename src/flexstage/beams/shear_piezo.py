@@ -2,4 +2,4 @@
 
 from flexstage.beams.law import PartLaw
 
-SHEAR_PIEZO = PartLaw(compliance=lambda part: part.compliance, mass=lambda part: part.stated().mass, needs_material=False)
+SHEAR_PIEZO = PartLaw(compliance=lambda part: part.compliance, mass=lambda part: part.stated().mass)

@@ -11,13 +11,14 @@ from flexstage.base.finding import Finding
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, Table
 from flexstage.beams.compliance import compliance, law_of
-from flexstage.beams.elasticity import AXES, LAWS, HingeDimensions
+from flexstage.beams.elasticity import LAWS, HingeDimensions
 from flexstage.beams.law import Range
 from flexstage.beams.profiled import HIGHEST
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile
 from flexstage.parts.shape import Profiled, Shaped
+from flexstage.spatial.frame import COMPONENTS
 
 _POISSON = 0.3
 _TOO_SOFT = 0.05
@@ -83,21 +84,10 @@ def _errors(part: Shaped, family: str, poisson: Number) -> dict[str, Array]:
     errors = {"rx": np.zeros_like(hinge.thickness)} if family == "bar" and part.throat.warping is None else {}
     with np.errstate(all="ignore"):  # values outside the range may be anything and are masked
         for axis, (law, numbers) in LAWS[family].items():
-            index = AXES.index(axis)
+            index = COMPONENTS.index(axis)
             value = hinge.beam[..., index] / law(hinge, numbers) - 1.0
             errors[axis] = np.where(within(family, axis, hinge), value, np.nan)
-    return {axis: errors[axis] for axis in AXES if axis in errors and not np.all(np.isnan(errors[axis]))}
-
-
-def family_of(part: Part) -> str | None:
-    """Return the family of fitted laws of a part, or `None` if there is none.
-
-    >>> from flexstage.parts.rod import Rod
-    >>> family_of(Rod("steel", length=0.1, diameter=0.002))
-    'bar'
-    """
-    part_law = law_of(part)
-    return None if part_law is None else part_law.family(part)
+    return {axis: errors[axis] for axis in COMPONENTS if axis in errors and not np.all(np.isnan(errors[axis]))}
 
 
 def hinge_dimensions(part: Shaped, poisson: Number) -> HingeDimensions:

@@ -64,6 +64,19 @@ def polynomials(count: int, places: Array) -> Array:
     return legendre.legvander(2.0 * np.asarray(places) - 1.0, count - 1).T
 
 
+@functools.cache
+def clamped(count: int, folds: int) -> tuple[Array, Array, Array]:
+    """Evaluate (1 - u^2)^n P_k(u), k < `count`, n = `folds`, u = 2 s - 1, and two derivatives with respect to s at the `FINE` points.
+
+    >>> clamped(3, 1)[0].shape
+    (3, 200)
+    """
+    clamp = Legendre([2.0 / 3.0, 0.0, -2.0 / 3.0], domain=[0.0, 1.0]) ** folds
+    terms = [clamp * Legendre.basis(k, domain=[0.0, 1.0]) for k in range(count)]
+    value, slope, curve = (np.array([term.deriv(order)(gauss(FINE).points) for term in terms]) for order in range(3))
+    return value, slope, curve
+
+
 def slopes(count: int, places: Array) -> Array:
     """Evaluate the derivatives of the `polynomials` with respect to s at `places` s (p,); shape (count, p).
 

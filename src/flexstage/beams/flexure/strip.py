@@ -13,10 +13,9 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Legendre
 
 from flexstage.base.number import Array, Number
-from flexstage.beams.flexure.modes import FINE, across, gauss, polynomials
+from flexstage.beams.flexure.modes import FINE, across, clamped, gauss, polynomials
 
 _DEGREES = (2, 4)
 """Degrees of the polynomials across the width of a bent leaf."""
@@ -44,21 +43,6 @@ class Fields:
     coupling: Array
 
 
-@functools.cache
-def _along() -> tuple[Array, Array, Array]:
-    """(1 - u^2) P_k and its derivative by s at the fine points of [0, 1], and their weights."""
-    rule = gauss(FINE)
-    terms = [Legendre([2.0 / 3.0, 0.0, -2.0 / 3.0], domain=[0.0, 1.0]) * Legendre.basis(k, domain=[0.0, 1.0]) for k in range(_TERMS)]
-    return np.array([term(rule.points) for term in terms]), np.array([term.deriv()(rule.points) for term in terms]), rule.weights
-
-
-@functools.cache
-def _products() -> tuple[Array, Array, Array]:
-    """Integrals of f g, f' g' and f' g of the polynomials along the strip."""
-    value, slope, weights = _along()
-    return value * weights @ value.T, slope * weights @ slope.T, slope * weights @ value.T
-
-
 def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
     """Build the quadratic energy form (120, 120) of a clamped strip of unit length (docs/nonlinear.md, 10).
 
@@ -78,7 +62,9 @@ def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
     )
     shear = 5.0 * (1.0 - poisson) / (thickness * thickness) * plain
     torsion = 0.5 * (1.0 - poisson) * sloped
-    value, slope, slope_value = _products()
+    moved, turned, _ = clamped(_TERMS, 1)
+    pairs = ((moved, moved), (turned, turned), (turned, moved))
+    value, slope, slope_value = (one * gauss(FINE).weights @ other.T for one, other in pairs)
     amplitude = np.kron(curved, value) + np.kron(torsion + shear, slope)
     rotation = np.kron(plain, slope) + np.kron(torsion + shear, value)
     # 2 nu A02 psi' a + (torsion - shear) a' psi: rows a, columns psi
@@ -98,7 +84,7 @@ def fields(width: float, thickness: Number, poisson: Number, size: int, loads: t
     (2, 10, 10)
     """
     form = stiffness(width, thickness, poisson)
-    value, _, weights = _along()
+    value, weights = clamped(_TERMS, 1)[0], gauss(FINE).weights
     moments = polynomials(size, gauss(FINE).points)
     load = value * weights @ moments.T
     right = np.zeros((4 * _TERMS, sum(loads)))

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Legendre
 
 from flexstage.base.number import Array, Number
-from flexstage.beams.flexure.modes import FINE, across, gauss, polynomials, slopes
+from flexstage.beams.flexure.modes import FINE, across, clamped, gauss, polynomials, slopes
 
 _DEGREES = (3, 5, 7)
 """Degrees of the polynomials across the width of a twisted leaf."""
@@ -65,15 +63,6 @@ def orthonormal(modes: Modes, weights: Array) -> Modes:
     return Modes(np.linalg.solve(root, modes.values), np.linalg.solve(root, modes.slopes))
 
 
-@functools.cache
-def _along() -> tuple[Array, Array, Array]:
-    """(1 - u^2)^2 P_k and its first two derivatives by s at the fine points of [0, 1]."""
-    clamp = Legendre([2.0 / 3.0, 0.0, -2.0 / 3.0], domain=[0.0, 1.0])
-    terms = [clamp * clamp * Legendre.basis(k, domain=[0.0, 1.0]) for k in range(_TERMS)]
-    value, slope, curve = (np.array([term.deriv(order)(gauss(FINE).points) for term in terms]) for order in (0, 1, 2))
-    return value, slope, curve
-
-
 def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
     """Compute the quadratic form (..., k, k) by which bending of the section reduces the energy of k twist modes.
 
@@ -83,24 +72,15 @@ def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
     twist (docs/nonlinear.md, 9).
     """
     width_wise, weights = across(_DEGREES), gauss(FINE).weights
-    value, slope, _ = _along()
-    plain, sloped, curved, mixed = _products()
+    value, slope, curve = clamped(_TERMS, 2)
+    pairs = ((width_wise.curved, value), (width_wise.sloped, slope), (width_wise.plain, curve))
+    plain, sloped, curved = (np.kron(one, each * weights @ each.T) for one, each in pairs)
+    mixed = np.kron(width_wise.mixed, curve * weights @ value.T)
     square, shear = width * width, 2.0 * (1.0 - poisson)
-    form = plain + square * (shear * sloped + poisson * mixed) + square * square * curved
+    form = plain + square * (shear * sloped + poisson * (mixed + mixed.T)) + square * square * curved
     load = poisson * np.kron(width_wise.curling[:, None], value * weights @ twist.slopes.T)
     load = width * (load + shear * np.kron(width_wise.turning[:, None], slope * weights @ twist.values.T))
     root = np.sqrt(np.diag(form))
     form, load = form / root / root[:, None], load / root[:, None]
     halves = [load[part].T @ np.linalg.lstsq(form[np.ix_(part, part)], load[part], rcond=_CUT)[0] for part in _PARTS]
     return halves[0] + halves[1]
-
-
-@functools.cache
-def _products() -> tuple[Array, Array, Array, Array]:
-    """The forms of a_j a_k, a_j' a_k', a_j'' a_k'' and a_j'' a_k, with their integrals across the width."""
-    width_wise, weights = across(_DEGREES), gauss(FINE).weights
-    value, slope, curve = _along()
-    mixed = np.kron(width_wise.mixed, curve * weights @ value.T)
-    pairs = ((width_wise.curved, value), (width_wise.sloped, slope), (width_wise.plain, curve))
-    plain, sloped, curved = (np.kron(one, each * weights @ each.T) for one, each in pairs)
-    return plain, sloped, curved, mixed + mixed.T

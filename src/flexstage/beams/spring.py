@@ -1,5 +1,0 @@
-"""Springs of specified stiffness."""
-
-from flexstage.beams.law import PartLaw
-
-SPRING = PartLaw(stiffness=lambda part: part.whole, mass=lambda part: part.stated().mass)
