@@ -25,6 +25,7 @@ from flexstage.base.units.quantity import (
     TIME,
 )
 from flexstage.mechanism.assembly.pattern import ORIGIN, Pattern, between, middle
+from flexstage.parts import GAUGES
 from flexstage.parts.body import Body, Payload
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.gauge import Instrument, SensorSense
@@ -267,7 +268,7 @@ class Mechanism(InNotebook, Description):
     links: Mapping[str, Link] = _empty()
     units: Mapping[str, Unit] = _empty()
     placements: Mapping[str, Placement] = _empty()
-    sensors: Mapping[str, Instrument] = _empty()
+    sensors: Mapping[str, Annotated[Instrument, GAUGES]] = _empty()
     gauges: Mapping[str, GaugePlace] = _empty()
     payloads: Mapping[str, Payload] = _empty()
     forces: Mapping[str, Force] = _empty()

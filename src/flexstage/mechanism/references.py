@@ -33,19 +33,16 @@ def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
     >>> list(references(Notch("steel", 1e-3, 1e-2, Circular(5e-3)), "parts.notch"))
     [('parts.notch.material', 'materials', 'steel')]
     """
+    entries: dict[str, Any] = {}
     if isinstance(value, Mapping):
-        for name, item in value.items():
-            if isinstance(item, str) and name in SECTIONS and name != "like":
-                yield f"{where}.{name}", SECTIONS[name], item
-            else:
-                yield from references(item, f"{where}.{name}")
+        entries = {name: item for name, item in value.items() if not (name == "like" and isinstance(item, str))}
     elif isinstance(value, Description):
-        for name in (each.name for each in fields(value)):  # type: ignore[arg-type]
-            item = getattr(value, name)
-            if isinstance(item, str) and name in SECTIONS and (item or name != "replaces"):
-                yield f"{where}.{name}", SECTIONS[name], item
-            elif isinstance(item, (Table, Description)):
-                yield from references(item, f"{where}.{name}")
+        entries = {each.name: getattr(value, each.name) for each in fields(value)}  # type: ignore[arg-type]
+    for name, item in entries.items():
+        if isinstance(item, str) and name in SECTIONS and (item or name != "replaces"):
+            yield f"{where}.{name}", SECTIONS[name], item
+        else:
+            yield from references(item, f"{where}.{name}")
 
 
 def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str]) -> Any:

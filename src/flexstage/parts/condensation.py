@@ -16,6 +16,7 @@ from flexstage.base.number import Array, first_design, stack
 from flexstage.base.session import SESSION
 from flexstage.parts.mass import tensor
 from flexstage.parts.matrix_file import LARGEST_DENSE, MatrixLike, digest_of, read_matrices
+from flexstage.parts.profile import single
 from flexstage.parts.superelement import FileUnits, Superelement
 from flexstage.spatial.frame import Frame, axes, mirror, twist_transform
 
@@ -296,14 +297,15 @@ def _mass_findings(part: Superelement, seen: Array, span: float) -> tuple[float,
 def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Array, span: float) -> Iterator[Finding]:
     advice = "Check both values, and the units of the file"
     if part.mass is not None:
-        stated = float(np.real(np.ravel(part.mass)[0]))
+        stated = single(part.mass)
         if abs(stated - mass) > STATED * max(abs(stated), abs(mass)):
             yield Finding("mass", f"wrong mass (got {stated:.6g} kg, expected {mass:.6g} kg from rigid motions of the matrices)", advice)
     if part.centre is not None:
         stated = np.real(first_design(stack(part.centre), 1))
         off = float(np.linalg.norm(stated - centre))
         if off > STATED * span:
-            what = f"wrong centre of mass ({off * 1e3:.4g} mm from that of the matrices, which is ({_millimetres(centre)}) mm)"
+            expected = ", ".join(f"{each * 1e3:.5g}" for each in centre)
+            what = f"wrong centre of mass ({off * 1e3:.4g} mm from that of the matrices, which is ({expected}) mm)"
             yield Finding("centre", what, advice)
     if part.inertia is not None:
         stated = np.real(first_design(tensor(part.inertia), 2))
@@ -311,10 +313,6 @@ def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Ar
         if off > STATED * max(float(np.trace(stated)), float(np.trace(moments))):
             result = ", ".join(f"{each:.4g}" for each in np.diag(moments))
             yield Finding("inertia", f"differs by {off:.4g} kg m^2 from the inertia of the matrices (xx, yy, zz = {result})", advice)
-
-
-def _millimetres(place: Array) -> str:
-    return ", ".join(f"{each * 1e3:.5g}" for each in place)
 
 
 def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
@@ -340,7 +338,7 @@ def _modes(part: Superelement, inner: MatrixLike, mass: MatrixLike) -> tuple[Arr
     size = inner.shape[0]
     if not size or part.modes == 0 or not np.any(mass.diagonal()):
         return np.zeros(0), np.zeros((size, 0))
-    most = np.inf if part.below is None else float(2.0 * np.pi * np.real(np.ravel(part.below)[0])) ** 2
+    most = np.inf if part.below is None else (2.0 * np.pi * single(part.below)) ** 2
     if scipy.sparse.issparse(inner):
         squares, shapes = _lowest(part, inner, mass)
     else:

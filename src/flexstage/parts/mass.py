@@ -166,8 +166,7 @@ def within(properties: MassProperties, frame: Frame) -> MassProperties:
 def _block(solid: Block, density: Number) -> tuple[Array, Array]:
     """Mass and principal moments along the edges of a block."""
     length, width, height = solid.size
-    full = _cuboid(density, length, width, height)
-    mass, diagonal = full
+    mass, diagonal = _cuboid(density, length, width, height)
     if solid.hole is not None:
         hole_mass, hole_diagonal = _cuboid(density, solid.hole[0], solid.hole[1], height)
         mass, diagonal = mass - hole_mass, diagonal - hole_diagonal

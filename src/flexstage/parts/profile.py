@@ -87,6 +87,7 @@ class Contour(Description):
         raise NotImplementedError
 
 
+@dataclass(frozen=True, eq=False)
 class _Conic(Contour):
     """Curve of half length `along` and height `across`."""
 
@@ -112,8 +113,6 @@ class Parabolic(_Conic):
     """Parabolic profile of height w = c (x/a)^2: `along` = a is half the length, `across` = c (Lobontiu et al., Precis. Eng. 26, 2002)."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "parabolic")
-    along: Annotated[Number, LENGTH, POSITIVE]
-    across: Annotated[Number, LENGTH, POSITIVE]
 
     @property
     def radius_at_throat(self) -> Number:
@@ -134,8 +133,6 @@ class Hyperbolic(_Conic):
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "hyperbolic")
-    along: Annotated[Number, LENGTH, POSITIVE]
-    across: Annotated[Number, LENGTH, POSITIVE]
     semi_axis: Annotated[Number, LENGTH, POSITIVE]
 
     @property
@@ -164,8 +161,6 @@ class Power(_Conic):
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "power")
-    along: Annotated[Number, LENGTH, POSITIVE]
-    across: Annotated[Number, LENGTH, POSITIVE]
     exponent: Annotated[Number, RATIO, Bound(low=1.0, high=16.0)]
 
     def height(self, station: Array) -> Array:

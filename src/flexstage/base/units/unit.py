@@ -64,15 +64,14 @@ def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: 
     return _with_unit(f"-{text}" if str(number) == "-0.0" else text, unit)
 
 
-def convert(value: Number, quantity: Quantity, unit: str | None = None) -> Number:
-    """Return an SI value (float or array) in `unit` (default: the quantity's display unit).
+def convert(value: Number, quantity: Quantity) -> Number:
+    """Return an SI value (float or array) in the quantity's display unit.
 
     >>> from flexstage.base.units.quantity import LENGTH
-    >>> convert(0.002, LENGTH), convert(0.0254, LENGTH, "in")
-    (2.0, 1.0)
+    >>> convert(0.002, LENGTH)
+    2.0
     """
-    unit = unit or quantity.shown
-    scale = _unit_scale(unit, quantity, "unit", unit)
+    scale = _unit_scale(quantity.shown, quantity, "unit", quantity.shown)
     if scale.denominator == 1:
         return value / float(scale)
     return value * float(1 / scale)

@@ -13,9 +13,9 @@ from flexstage.base.storage.digest import digest
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
-from flexstage.parts.body import Solid
 from flexstage.parts.mass import solid_properties
 from flexstage.parts.part import counter_of, inner, material_of, span
+from flexstage.parts.profile import single
 from flexstage.parts.shape import Shaped
 
 _STATED, _ASKED = "as specified", "as requested"
@@ -68,7 +68,7 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     if floor.material is not None:
         choices[GROUND] = (floor.material, floor.source)
     require([*_unknown(mechanism, choices), *_unstated_findings(mechanism, assembly, choices)])
-    bodies = {name: _stated_expansion(mechanism, material) for name, (material, _) in choices.items()}
+    bodies = {name: _or_nan(mechanism.materials[material].expansion) for name, (material, _) in choices.items()}
     drawn = {name: as_drawn(mechanism, link) for name, link in assembly.links.items()}
     parts = {name: (coefficient(link), span(link.part)) for name, link in drawn.items() if _grows(link)}
     taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
@@ -81,8 +81,7 @@ def _unknown_growth(assembly: Assembly) -> Iterator[Finding]:
         yield Finding(name, what, "Compute it in the finite-element program that exported the matrices")
 
 
-def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
-    value = mechanism.materials[material].expansion
+def _or_nan(value: Number | None) -> Number:
     return np.nan if value is None else value
 
 
@@ -121,9 +120,7 @@ def coefficient(link: PlacedLink) -> Number:
     >>> coefficient(expand(double_triangle()).links["B1/pzt"])
     -3e-06
     """
-    holder = inner(link.part) if link.material is None else link.material
-    value = getattr(holder, "expansion", None)
-    return np.nan if value is None else value
+    return _or_nan(getattr(inner(link.part) if link.material is None else link.material, "expansion", None))
 
 
 def _grows(link: PlacedLink) -> bool:
@@ -136,17 +133,13 @@ def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple
     if len(_distinct(mechanism, (solid.material for solid in solids.values()))) == 1:
         return next(iter(solids.values())).material, "of its solids"
     if solids:
-        heaviest = max(solids, key=lambda solid: _weight(mechanism, solids[solid]))
+        weights = {key: single(solid_properties(each, mechanism.materials[each.material].density).mass) for key, each in solids.items()}
+        heaviest = max(weights, key=weights.__getitem__)
         return solids[heaviest].material, f"of its heaviest solid, {heaviest}"
     result = _link_materials(mechanism, assembly, name)
     if len(result) == 1:
         return result[0], "of its links"
     return "", f"no solids, and its links are of {', '.join(result) or 'no material'}"
-
-
-def _weight(mechanism: Mechanism, solid: Solid) -> float:
-    """Mass of a solid on the first design."""
-    return float(np.real(np.ravel(solid_properties(solid, mechanism.materials[solid.material].density).mass)[0]))
 
 
 def _link_materials(mechanism: Mechanism, assembly: Assembly, body: str) -> list[str]:

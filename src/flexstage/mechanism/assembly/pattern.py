@@ -94,6 +94,8 @@ class Pose(Description):
         return self.along if self.start is None or self.end is None else between(self.start, self.end)
 
 
+RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
+"""Placement key of several instances: stem, first number, last number."""
 Pattern: TypeAlias = Polar | Pose
 
 
@@ -103,7 +105,7 @@ def copy_names(key: str) -> tuple[str, ...]:
     >>> copy_names("B1-B3"), copy_names("top")
     (('B1', 'B2', 'B3'), ('top',))
     """
-    match = re.fullmatch(r"(.*?)(\d+)-(?:\1)?(\d+)", key)
+    match = RANGE.fullmatch(key)
     if match is None:
         return (key,)
     stem, first, last = match[1], int(match[2]), int(match[3])

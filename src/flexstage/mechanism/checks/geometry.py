@@ -55,6 +55,8 @@ def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterat
     stage = placed_bodies(mechanism)
     for where, body in every_body(mechanism):
         yield from _body(where, body) if body.of is None else _lent(where, body, stage.get(body.of))
+        for name, solid in body.solids.items():
+            yield from _solid(f"{where}.solids.{name}", solid)
     yield from _without_image(mechanism)
     yield from _lengths(mechanism)
     for name, payload in mechanism.payloads.items():
@@ -147,8 +149,6 @@ def _body(where: str, body: Body) -> Iterator[Finding]:
         yield from _inertia(f"{where}.inertia", body.inertia)
     if body.point and (body.mass is None or body.inertia is not None):
         yield Finding(f"{where}.point", "a point requires a specified mass without inertia", "Specify only a mass, or remove point")
-    for name, solid in body.solids.items():
-        yield from _solid(f"{where}.solids.{name}", solid)
 
 
 def _lent(where: str, body: Body, owner: Body | None) -> Iterator[Finding]:
@@ -160,8 +160,6 @@ def _lent(where: str, body: Body, owner: Body | None) -> Iterator[Finding]:
     if owner is not None and owner.mass is not None and body.solids:
         what = f'its solids belong to "{body.of}", which has a specified mass'
         yield Finding(where, what, f'Remove the mass: the solids of both bodies then determine the mass of "{body.of}"')
-    for name, solid in body.solids.items():
-        yield from _solid(f"{where}.solids.{name}", solid)
 
 
 def _solid(where: str, solid: Solid) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.mechanism.assembly.expand import placed_bodies, placed_links, unit_of_copy, unknown_names
 from flexstage.mechanism.assembly.likeness import drawn_units, likeness_findings
-from flexstage.mechanism.assembly.pattern import copy_names
+from flexstage.mechanism.assembly.pattern import RANGE, copy_names
 from flexstage.mechanism.assembly.sight import gauge_findings
 from flexstage.mechanism.grammar.grammar import RESERVED
 from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NAMED, NOT_GROWING, PLATFORM, Link, Mechanism, every_body, posed
@@ -19,7 +19,6 @@ from flexstage.parts.part import inner
 
 MOST_COPIES = 360
 _LONGEST = 60
-_RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
 
 
 def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -66,7 +65,7 @@ def _range_fault(where: str, key: str) -> Finding | None:
         return Finding(
             f"{where[:_LONGEST]}...", f"name too long (got {len(key)} characters, expected {_LONGEST} at most)", "Use a shorter name"
         )
-    match = _RANGE.fullmatch(key)
+    match = RANGE.fullmatch(key)
     if match is None:
         return None
     if max(len(match[2]), len(match[3])) > 9:

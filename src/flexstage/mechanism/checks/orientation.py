@@ -46,14 +46,11 @@ def _links(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _pair(f"{where}.{'to' if link.along is None else 'along'}", link.direction, f"{where}.bends", link.bends)
         part = mechanism.parts.get(link.part)
         if part is not None and link.bends is None and not is_axisymmetric(part, link.free):
-            yield Finding(where, *_unsaid(link.part, ported=bool(ports_of(part))))
-
-
-def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
-    if ported:
-        return f'bends (z axis of the link) missing: part "{part}" has ports', 'Use e.g. bends = "z"'
-    what = f'bends missing: part "{part}" is not axisymmetric'
-    return what, 'Specify the axis of its compliant rotation, e.g. bends = "y"'
+            what = f'bends missing: part "{link.part}" is not axisymmetric'
+            advice = 'Specify the axis of its compliant rotation, e.g. bends = "y"'
+            if ports_of(part):
+                what, advice = f'bends (z axis of the link) missing: part "{link.part}" has ports', 'Use e.g. bends = "z"'
+            yield Finding(where, what, advice)
 
 
 def is_axisymmetric(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:

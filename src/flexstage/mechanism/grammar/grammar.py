@@ -58,9 +58,8 @@ from flexstage.mechanism.mechanism import (
     RayleighDamping,
     StructuralDamping,
 )
-from flexstage.parts import GAUGES, PARTS
+from flexstage.parts import PARTS
 from flexstage.parts.body import SOLIDS, Block, Cylinder, Imported, Solid
-from flexstage.parts.gauge import Gauge, Instrument
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.shape import Elastic
 
@@ -113,11 +112,6 @@ class ListNode(RowNode):
     def example(self) -> str:
         """Example as written in a file."""
         return f"[{', '.join([self.item.example] * (self.length or 1))}]"
-
-    @property
-    def size(self) -> int | None:
-        """Length of the list."""
-        return self.length
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
         """Yield the items. A table has its number as address, counted from 1; other items have the address of the list."""
@@ -521,12 +515,9 @@ def _slot(record: type, field: dataclasses.Field[Any], hint: Any) -> Slot:
 
 
 def _without_none(hint: Any) -> tuple[Any, bool]:
-    if typing.get_origin(hint) not in (types.UnionType, typing.Union):
-        return hint, False
-    rest = [item for item in typing.get_args(hint) if item is not type(None)]
-    if len(rest) == len(typing.get_args(hint)):
-        return hint, False
-    return functools.reduce(lambda left, right: left | right, rest), True
+    options = typing.get_args(hint) if typing.get_origin(hint) in (types.UnionType, typing.Union) else ()
+    rest = tuple(option for option in options if option is not type(None))
+    return (hint, False) if rest == options else (typing.Union[rest], True)  # noqa: UP007  (a tuple of classes)
 
 
 def _node(hint: Any) -> Node:
@@ -537,9 +528,6 @@ def _node(hint: Any) -> Node:
         return NamedNode()
     if hint == Joins:
         return JoinsNode()
-    if hint is Instrument:
-        kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
-        return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)
     if hint in (Elastic, Solid) or origin in (types.UnionType, typing.Union):
         several = {Elastic: PARTS.all.values(), Solid: SOLIDS}
         options = [each for option in typing.get_args(hint) or (hint,) for each in several.get(option, [option])]
@@ -559,26 +547,28 @@ def _discriminator(option: type) -> tuple[str | None, str]:
     return told or (_KIND, option.kind)  # type: ignore[attr-defined]
 
 
-def _named_node(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordNode:
-    if hint is bool:
-        return FlagNode()
-    if hint in (str, int):
-        return TextNode() if hint is str else WholeNode()
+_PLAIN: Mapping[type, Node] = {bool: FlagNode(), str: TextNode(), int: WholeNode()}
+
+
+def _named_node(hint: type) -> Node:
+    if hint in _PLAIN:
+        return _PLAIN[hint]
     return ChoiceNode(hint) if issubclass(hint, Enum) else RecordNode(hint)
 
 
 def _annotated_node(hint: Any) -> Node:
     inner, *extras = typing.get_args(hint)
-    node = next((extra for extra in extras if isinstance(extra, Node)), None)
-    if node is not None:
+
+    def extra(kind: type) -> Any:
+        return next((each for each in extras if isinstance(each, kind)), None)
+
+    if node := extra(Node):
         return node
-    register = next((extra for extra in extras if isinstance(extra, Register)), None)
-    if register is not None:
+    if register := extra(Register):
         return UnionNode(_KIND, tuple((name, RecordNode(option)) for name, option in register.all.items()), next(iter(register.own)))
     if inner is int:
         return WholeNode(extras[0])
-    quantity = next(extra for extra in extras if isinstance(extra, Quantity))
-    bound = next((extra for extra in extras if isinstance(extra, Bound)), None)
+    quantity, bound = extra(Quantity), extra(Bound)
     if quantity is DIRECTION:
         return DirectionNode()
     if quantity in (COMPLIANCE_MATRIX, STIFFNESS_MATRIX):

@@ -157,7 +157,7 @@ class Node:
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Return a value as a file contains it; raises `DesignError` if files cannot contain it."""
-        raise NotImplementedError
+        return value
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Return the JSON Schema of the value in a file."""
@@ -346,10 +346,8 @@ class NamedNode(Node):
 class RowNode(Node):
     """Row of values in square brackets."""
 
-    @property
-    def size(self) -> int | None:
-        """Required number of values (None: any)."""
-        return None
+    length: int | None
+    """Required number of values (None: any)."""
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
         """Yield address, node and value of each element of a row."""
@@ -357,8 +355,9 @@ class RowNode(Node):
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """Return a tuple with the value of each element."""
-        if not is_row(self, raw, self.size, where, reader):
-            return BAD
+        if not isinstance(raw, list) or self.length not in (None, len(raw)):
+            count = "several values" if self.length is None else f"{self.length} values"
+            return reader.refuse(where, f"must be {count} (got {kind(raw)})", f"Write them in brackets: {self.example}")
         return every([reader.read(node, part, join(where, name) if name else where) for name, node, part in self.parts(raw)])
 
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
@@ -392,7 +391,7 @@ class VectorNode(RowNode):
         return row_schema([item.schema(definitions) for item in self.items])
 
     @property
-    def size(self) -> int:
+    def length(self) -> int:  # type: ignore[override]
         """Number of components."""
         return len(self.items)
 
@@ -501,10 +500,6 @@ class WholeNode(Node):
             return reader.refuse(where, f"must be {self.bound.whole()} (got {kind(raw)})", f"Use e.g. {self.bound.low:g}")
         return raw
 
-    def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Return the integer."""
-        return value
-
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Return the schema of an integer."""
         return {"type": "integer", **_limits(self.bound)}
@@ -519,10 +514,6 @@ class FlagNode(Node):
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """Return true or false."""
         return raw if isinstance(raw, bool) else reader.refuse(where, f"must be a boolean (got {kind(raw)})", "Use true or false")
-
-    def write(self, value: Any, where: str, writer: Writer) -> bool:
-        """Return true or false."""
-        return bool(value)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Return the schema of a boolean."""
@@ -656,15 +647,6 @@ def short(raw: Any) -> str:
 def every(items: list[Any]) -> Any:
     """Return the items; `BAD` if any item could not be read."""
     return BAD if any(item is BAD for item in items) else tuple(items)
-
-
-def is_row(node: Node, raw: Any, length: int | None, where: str, reader: Reader) -> bool:
-    """Return whether a file's value is a list with `length` values (None: any number); report an error if not."""
-    fits = isinstance(raw, list) and (length is None or len(raw) == length)
-    if not fits:
-        count = f"{length} values" if length is not None else "several values"
-        reader.refuse(where, f"must be {count} (got {kind(raw)})", f"Write them in brackets: {node.example}")
-    return fits
 
 
 def row_schema(items: list[dict[str, Any]]) -> dict[str, Any]:

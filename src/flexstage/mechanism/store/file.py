@@ -85,16 +85,12 @@ def _vast(value: Any, where: str) -> Iterator[str]:
         yield from _vast(item, f"{where}.{key}" if where else str(key))
 
 
-def _reason(error: OSError | ValueError) -> str:
-    return (error.strerror if isinstance(error, OSError) else None) or str(error)
-
-
 def _unreadable(where: str, error: OSError | ValueError) -> DesignError:
     if isinstance(error, FileNotFoundError):
         return refuse(where, "file not found", "Check the path")
     if isinstance(error, IsADirectoryError):
         return refuse(where, "not a file but a folder", "Use the design file in it")
-    return refuse(where, f"cannot be read: {_reason(error)}", "Check the path and its permissions")
+    return refuse(where, f"cannot be read: {getattr(error, 'strerror', None) or error}", "Check the path and its permissions")
 
 
 def _too_large(where: str) -> DesignError:

@@ -123,14 +123,10 @@ def _set_at(document: Any, changed: Mechanism, path: tuple[str, ...]) -> None:
         key = node.key(value, name)
         node, value = node.child(value, name), member(value, name)
         last = number == len(path) - 1
-        if last or not _holds(table, key) or isinstance(table[key], str):
+        if last or not (isinstance(key, int) or key in table) or isinstance(table[key], str):
             table[key] = plain(node, value, ".".join(path[: number + 1]), changed.formulas)
             return
         table = table[key]
-
-
-def _holds(table: Any, key: Any) -> bool:
-    return isinstance(key, int) or key in table
 
 
 def _untag(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import refuse
 from flexstage.base.lazy import LazyModule
+from flexstage.base.storage.digest import digest
 from flexstage.mechanism.addresses.address import tag_of
 from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.grammar.formulas import NUMBERS
@@ -66,13 +67,8 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
     except (tomlkit.exceptions.TOMLKitError, ValueError):  # a DesignError is a ValueError
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())
-    return result if told and now.overrides == mechanism.overrides and _same_physics(now, mechanism) else None
-
-
-def _same_physics(first: Mechanism, second: Mechanism) -> bool:
-    from flexstage.base.storage.digest import digest
-
-    return digest(first, physics=True) == digest(second, physics=True)
+    alike = now.overrides == mechanism.overrides and digest(now, physics=True) == digest(mechanism, physics=True)
+    return result if told and alike else None
 
 
 def _put(document: Any, path: tuple[str, ...], address: str, tag: str) -> None:
