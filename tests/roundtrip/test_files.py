@@ -17,6 +17,7 @@ import scipy.io
 
 from flexstage.base.finding import DesignError
 from flexstage.base.processes.jobs import environment
+from flexstage.base.processes.pool import ProcessPool
 from flexstage.base.storage import files
 from flexstage.base.storage.files import hdf, mat, new_hdf, require_regular
 from flexstage.experiment.formats.read import read
@@ -69,7 +70,7 @@ def test_a_crash_of_the_library_is_told_by_its_signal(tmp_path: Path, monkeypatc
     path = without_checksums(tmp_path / "a.h5")
     (tmp_path / "h5py.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    monkeypatch.setattr(files, "CHILD", files.Child())
+    monkeypatch.setattr(files, "POOL", ProcessPool(files.POOL.function))
     assert "the library that reads it crashed (signal 11)" in refusal(path)
 
 

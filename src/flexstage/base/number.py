@@ -88,7 +88,7 @@ def stack(values: Any) -> Array:
         return np.array(values)
     inner = [stack(value) for value in values]
     depth = _depth(values)
-    tails = [item.shape[item.ndim - depth + 1 :] if depth > 1 else () for item in inner]
+    tails = [item.shape[item.ndim - depth + 1 :] for item in inner]
     batch = np.broadcast_shapes(*(item.shape[: item.ndim - depth + 1] for item in inner))
     return np.stack([np.broadcast_to(item, batch + tail) for item, tail in zip(inner, tails, strict=True)], axis=-depth)
 

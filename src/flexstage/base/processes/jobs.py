@@ -107,13 +107,13 @@ class Worker:
         self._send(arguments)
 
     def call(self, *arguments: Any) -> Any:
-        """Call the function and return its result, or raise its exception; the worker's queue must have no other reader.
+        """Call the function and return its result, or raise its exception; messages of other workers in its queue are dropped.
 
         Raises `EOFError` with the exit code if the process crashed or was ended. After this error or an interrupt, the process has ended.
         """
         try:
             self.ask(*arguments)
-            _, word, value = self.heard.get()
+            _, word, value = next(message for message in iter(self.heard.get, None) if message[0] is self)
             if word is Word.ENDED:
                 raise EOFError(value)
         except BaseException:

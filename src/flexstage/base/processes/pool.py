@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import queue
+import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -48,6 +49,7 @@ class ProcessPool:
         self.function = function
         self.heard: Heard = queue.SimpleQueue()
         self.idle: list[Worker] = []
+        self._lock = threading.Lock()
 
     def __enter__(self) -> Self:
         return self
@@ -55,6 +57,16 @@ class ProcessPool:
     def __exit__(self, *_error: object) -> None:
         for worker in self.idle:
             worker.end()
+
+    def call(self, *arguments: Any) -> Any:
+        """Call the function in a process that stays, one call at a time; returns the result or raises the errors of `Worker.call`."""
+        with self._lock:
+            worker = self.worker("")
+            try:
+                return worker.call(*arguments)
+            finally:
+                if worker.process.poll() is None:
+                    self.idle.append(worker)
 
     def worker(self, kin: str) -> Worker:
         """Return an idle process, preferably one that had a call of the same `kin`, or a new one; raises `OSError` if none can start."""

@@ -13,7 +13,6 @@ import math
 import os
 import signal
 import stat
-import threading
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,8 +24,9 @@ import scipy
 
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
-from flexstage.base.processes.jobs import Line, Worker, limit_memory, limit_processor
+from flexstage.base.processes.jobs import Line, limit_memory, limit_processor
 from flexstage.base.processes.memory import gigabytes, require_memory
+from flexstage.base.processes.pool import ProcessPool
 
 Attribute: TypeAlias = str | float | tuple[str, ...]
 PATIENCE = 8.0
@@ -185,39 +185,11 @@ def new_hdf(place: Path, size: int) -> Generator[Any]:
             raise OSError(str(error)) from None
 
 
-class Child:
-    """Worker process that reads files. The first request starts the process; the next request after a failure restarts it."""
-
-    def __init__(self) -> None:
-        self._worker: Worker | None = None
-        self._owner = 0
-        self._lock = threading.Lock()
-
-    def ask(self, *arguments: Any) -> Any:
-        """Return the result of `_answer`. Raises the errors of `Worker.call`; after a failure, the next request starts a worker."""
-        with self._lock:
-            known = self._worker
-            if known is None or self._owner != os.getpid() or known.process.poll() is not None:
-                known = self._worker = Worker(_answer)
-                self._owner = os.getpid()
-            return known.call(*arguments)
-
-    def end(self) -> None:
-        """End the worker."""
-        if self._worker is not None and self._owner == os.getpid():
-            self._worker.end()
-
-
-CHILD = Child()
-"""The only file worker of this process; starting it and importing its libraries takes half a second each."""
-atexit.register(CHILD.end)
-
-
 def _ask(read: Callable[..., Any], requested: Path, size: int, *arguments: Any) -> Any:
     """Answer of the worker about a file, at most `size` bytes of numbers; raises `DesignError` if unreadable."""
     path, seconds = str(requested), PATIENCE + _SLOW * size
     try:
-        return CHILD.ask(partial(read, requested.absolute(), *arguments), path, seconds, MEMORY + _COPIES * size)
+        return POOL.call(partial(read, requested.absolute(), *arguments), path, seconds, MEMORY + _COPIES * size)
     except EOFError as error:
         raise refuse(path, f"it is damaged: {_how_it_ended(error.args[0], seconds)}", "Copy or export it again") from None
 
@@ -244,6 +216,11 @@ def _answer(_line: Line, read: partial[Any], shown: str, seconds: float, memory:
         raise refuse(shown, f"reading it takes more than {gigabytes(memory)} of memory", "Export the file again, or in parts") from None
     except Exception as error:  # noqa: BLE001
         raise refuse(shown, *_reason(error, read.args[0], is_mat=read.func is _mat)) from None
+
+
+POOL = ProcessPool(_answer)
+"""Pool with the only file worker of this process; starting it and importing its libraries takes half a second each."""
+atexit.register(POOL.__exit__)
 
 
 def _error_text(error: Exception) -> str:
