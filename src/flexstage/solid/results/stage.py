@@ -102,8 +102,12 @@ class SolidStage(InNotebook):
 
 
 def _figures(found: Statics, modes: Modes) -> dict[str, float]:
-    frequencies = {f"platform mode {number + 1}": float(value) for number, value in enumerate(modes.platform_frequencies)}
-    return stiffness_figures(found) | frequencies
+    return stiffness_figures(found) | mode_figures(modes)
+
+
+def mode_figures(modes: Modes) -> dict[str, float]:
+    """Return the frequencies of the platform's modes by name [Hz]."""
+    return {f"platform mode {number + 1}": float(value) for number, value in enumerate(modes.platform_frequencies)}
 
 
 def stage_figures(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, float]:
