@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import numpy as np
 import typer
 
-from flexstage.analysis.dynamics.pairing import Pair
 from flexstage.analysis.loaded.standing import require_standing
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.lazy import LazyModule
@@ -57,8 +55,7 @@ from flexstage.solid.show.tables import (
 
 if TYPE_CHECKING:
     from flexstage.show import page
-    from flexstage.show.page import Headline, Section
-    from flexstage.show.viewer.motions import Motion
+    from flexstage.show.page import Headline
     from flexstage.solid.show import report as reports
     from flexstage.solid.show import sections as pages
 else:  # reports are rare
@@ -114,18 +111,6 @@ class SolidOptions:
         return Ways(Cache(), shown.step, Limits(memory=_size(self.memory)), pool, print_warning, print_note)
 
 
-@dataclass(frozen=True)
-class _Result:
-    """Results of the solid model in one document, their tables; headline, sections and motions of a report; warnings about them."""
-
-    said: Headline
-    results: tuple[Any, ...]
-    tables: Callable[[], Iterator[Table | None]]
-    sections: Callable[[], Iterator[Section | None]]
-    warnings: tuple[Finding, ...]
-    motions: Callable[[], tuple[Motion, ...]] = tuple
-
-
 @command("report")
 def solid(
     mechanism: Mechanism,
@@ -148,13 +133,7 @@ def solid(
         if scope is Scope.STAGE:
             require_standing(mechanism)
         found = _STUDIES[scope](mechanism, resolution, ways)
-    return CommandResult(
-        mechanism,
-        lambda: SideBySide(({"what": scope.value}, *found.results)),
-        found.tables,
-        lambda: reports.solid_report(mechanism, found.said, found.sections(), found.warnings, found.motions()),
-        warnings=(*free_end_warnings(mechanism), *found.warnings),
-    )
+    return replace(found, warnings=(*free_end_warnings(mechanism), *found.warnings))
 
 
 @command("report")
@@ -185,7 +164,7 @@ def verify(
         stage = None if found.stage is None else pages.stage_solid_section(found.stage)
         pairs, beside = ({}, None) if found.stage is None else pages.paired_with_theory(mechanism, found.stage.result)
         more = () if found.stage is None else pages.solid_motions(mechanism, found.stage.result, pairs)
-        sections = iter([pages.verification_section(found), beside, pages.hinge_section(found.hinges), units, stage])
+        sections = [pages.verification_section(found), beside, pages.hinge_section(found.hinges), units, stage]
         return reports.solid_report(mechanism, pages.verification_headline(found), sections, warnings, more)
 
     print_missing(found.reasons)
@@ -241,19 +220,24 @@ def _size(memory: str | None) -> float | None:
     return size
 
 
-def _hinge_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Result:
+def _hinge_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> CommandResult:
     found = solid_hinges(mechanism, hinges(resolution.accuracy, resolution.order, ways))
     warnings = _inexact_hinges(found)
-    return _Result(
-        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them less accurate than required.", not warnings),
-        results=({"hinges": found},),
-        tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
-        sections=lambda: iter([pages.hinge_section(found)]),
+
+    def report() -> str:
+        text = f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them less accurate than required."
+        return reports.solid_report(mechanism, page.Headline(text, not warnings), [pages.hinge_section(found)], warnings)
+
+    return CommandResult(
+        mechanism,
+        lambda: SideBySide(({"what": "hinge"}, {"hinges": found})),
+        lambda: [hinge_table(found), *hinge_matrices(found)],
+        report,
         warnings=warnings,
     )
 
 
-def _unit_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Result:
+def _unit_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> CommandResult:
     alone = units_alone(mechanism)
     todo = reduction_plan(alone, resolution, ways)
     bare = bool(todo.missing(ways.cache))
@@ -266,40 +250,34 @@ def _unit_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Re
             yield command_table(name, unit)
             yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
 
-    return _Result(
-        said=_accuracy_headline(found, resolution),
-        results=(found, {"units": found.result}),
-        tables=tables,
-        sections=lambda: iter([pages.unit_section(found)]),
-        warnings=_accuracy_warnings("units", found, resolution),
+    warnings = _accuracy_warnings("units", found, resolution)
+    return CommandResult(
+        mechanism,
+        lambda: SideBySide(({"what": "unit"}, found, {"units": found.result})),
+        tables,
+        lambda: reports.solid_report(mechanism, _accuracy_headline(found, resolution), [pages.unit_section(found)], warnings),
+        warnings=warnings,
     )
 
 
-def _stage_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Result:
+def _stage_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> CommandResult:
     work_ahead(reduction_plan([with_drawn_parts(mechanism)], resolution, ways), ways)
     found = verification.stage_solid(mechanism, resolution, solids(ways))
-    stage = found.result
+    stage, warnings = found.result, _accuracy_warnings("stage", found, resolution)
 
     def tables() -> Iterator[Table | None]:
-        yield stiffness_table(stage.statics)
-        yield principal_table(stage.statics)
-        yield direction_table(stage.statics)
+        for table in (stiffness_table, principal_table, direction_table):
+            yield table(stage.statics)
         yield mode_table(stage.modes)
         yield block_table(stage)
-        yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
+        yield stress_table("Highest stress over the strokes", stage.stress)
 
-    @cache
-    def paired() -> tuple[Mapping[int, Pair], Section | None]:
-        return pages.paired_with_theory(mechanism, stage)
+    def report() -> str:
+        pairs, beside = pages.paired_with_theory(mechanism, stage)
+        sections, motions = [pages.stage_solid_section(found), beside], pages.solid_motions(mechanism, stage, pairs)
+        return reports.solid_report(mechanism, _accuracy_headline(found, resolution), sections, warnings, motions)
 
-    return _Result(
-        said=_accuracy_headline(found, resolution),
-        results=(found, stage),
-        tables=tables,
-        sections=lambda: iter([pages.stage_solid_section(found), paired()[1]]),
-        warnings=_accuracy_warnings("stage", found, resolution),
-        motions=lambda: pages.solid_motions(mechanism, stage, paired()[0]),
-    )
+    return CommandResult(mechanism, lambda: SideBySide(({"what": "stage"}, found, stage)), tables, report, warnings=warnings)
 
 
 _STUDIES = {Scope.HINGE: _hinge_study, Scope.UNIT: _unit_study, Scope.STAGE: _stage_study}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -62,17 +62,16 @@ def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
     blocks: list[Block | None] = [solid_unit_table(found)]
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
-        surfaces = _in_megapascals(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}))
         caption = f"Von Mises stress of the {name} unit at full stroke, with its output guided. Displacements are magnified."
-        picture = Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), f"unit-{name}", caption), caption)
-        stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
-        tables = (command_table(name, unit), *(() if stress is None else (stress,)))
-        blocks += [BlockRow((picture, *tables))] if stress is not None else list(tables)
+        picture = _stress_picture(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}), f"unit-{name}", caption)
+        table, stress = command_table(name, unit), stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
+        blocks.append(table if stress is None else BlockRow((picture, table, stress)))
     return section("Isolated units", blocks)
 
 
-def _in_megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
-    return tuple(replace(each, values=1e-6 * each.values) for each in surfaces)
+def _stress_picture(surfaces: Iterable[Surface], name: str, caption: str) -> Picture:
+    shown = [replace(each, values=1e-6 * each.values) for each in surfaces]
+    return Picture(to_svg(skin_figure(shown, "MPa", exponent=_STRESS_EXPONENT), name, caption), caption)
 
 
 def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
@@ -91,7 +90,7 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
     )
     polar = to_svg(directional_figure(stage.statics), "solid-polar", "Stiffness by direction in the plane")
     table = stress_table("Highest stress", stage.stress)
-    stress = [] if table is None else [BlockRow((_stress_picture(stage), table))]
+    stress = [] if table is None else [BlockRow((_worst_stress(stage), table))]
     return section(
         "The whole stage",
         [
@@ -115,11 +114,10 @@ def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
         yield Picture(to_svg(figure, f"solid{index}", caption), caption)
 
 
-def _stress_picture(stage: SolidStage) -> Picture:
+def _worst_stress(stage: SolidStage) -> Picture:
     assert stage.worst is not None  # noqa: S101  every stress has a worst corner
-    surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
     caption = "Von Mises stress with permanent load, at the strokes with the highest stress of the weakest link; magnified displacements."
-    return Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), "stress", caption), caption)
+    return _stress_picture(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)), "stress", caption)
 
 
 def verification_headline(found: Verification) -> Headline:
