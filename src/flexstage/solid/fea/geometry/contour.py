@@ -62,3 +62,19 @@ def segments(points: Sequence[tuple[float, float]]) -> list[occ.TopoDS_Shape]:
     """Draw segments between consecutive points of the xy plane [mm]; no segment between equal points."""
     pairs = pairwise(points)
     return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairs if np.hypot(b[0] - a[0], b[1] - a[1]) > _SAME]
+
+
+def arc(points: Sequence[tuple[float, float]]) -> occ.TopoDS_Shape:
+    """Draw the arc of a circle through three points of the xy plane [mm]."""
+    return occ.ArcOfCircle(*(occ.Pnt(*point, 0) for point in points))
+
+
+def extrude_outline(edges: Sequence[occ.TopoDS_Shape], width: float) -> occ.TopoDS_Shape:
+    """Extrude a closed outline in the xy plane over a width [mm], on both sides of the plane.
+
+    The outline is counter-clockwise: the extrusion along +z then gives a positive volume.
+
+    >>> extrude_outline(segments([(0, 0), (1, 0), (1, 1), (0, 0)]), 2.0).mass
+    1.0
+    """
+    return occ.Face(occ.Wire(edges)).Extrude(occ.Vec(0, 0, width)).Move(occ.Vec(0, 0, -0.5 * width))

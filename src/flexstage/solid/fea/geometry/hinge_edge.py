@@ -6,7 +6,6 @@ cannot be meshed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from netgen import occ
 
 from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.profile import rise as cut_height
-from flexstage.solid.fea.geometry.contour import contour_edges, segments
+from flexstage.solid.fea.geometry.contour import arc, contour_edges, extrude_outline, segments
 from flexstage.solid.fea.geometry.piece import millimetres
 
 SHORTENED = 0.03
@@ -82,10 +81,10 @@ class HingeEdge:
         first, last = (self.rise + self.depth * (1.0 - float(np.cos(angle))) for angle in self.angles)
         return first, last
 
-    def at(self, angle: float) -> tuple[float, float]:
-        """Return the point of the arcs at an angle."""
+    def at(self, angle: float, sign: float) -> tuple[float, float]:
+        """Return the point of the arcs at an angle, above the axis (`sign` 1) or below it (-1)."""
         flat = self.half - self.along
-        return (flat if angle > 0.0 else -flat) + self.along * np.sin(angle), self.rise + self.depth * (1.0 - np.cos(angle))
+        return (flat if angle > 0.0 else -flat) + self.along * np.sin(angle), sign * (self.rise + self.depth * (1.0 - np.cos(angle)))
 
 
 def extrude(edge: HingeEdge, width: float) -> occ.TopoDS_Shape:
@@ -97,8 +96,7 @@ def extrude(edge: HingeEdge, width: float) -> occ.TopoDS_Shape:
     upper, lower = _curve(edge, 1.0), _curve(edge, -1.0)
     (start, end), (first, last) = edge.ends, edge.tops
     right, left = segments([(end, -last), (end, last)]), segments([(start, first), (start, -first)])
-    face = occ.Face(occ.Wire([*lower, *right, *reversed(upper), *left]))  # counter-clockwise: extrusion along +z gives a positive volume
-    return face.Extrude(occ.Vec(0, 0, width)).Move(occ.Vec(0, 0, -0.5 * width))
+    return extrude_outline([*lower, *right, *reversed(upper), *left], width)
 
 
 def revolve(edge: HingeEdge) -> occ.TopoDS_Shape:
@@ -121,35 +119,25 @@ def _curve(edge: HingeEdge, sign: float) -> _Curve:
     if isinstance(edge.profile, Contour):
         curve, near, far = contour_edges(edge.profile, edge.rise, sign), (-edge.half, sign * first), (edge.half, sign * last)
     else:
-        curve, (near, far) = _arcs(edge, sign), (_at(edge, sign)(angle) for angle in edge.angles)
+        curve, (near, far) = _arcs(edge, sign), (edge.at(angle, sign) for angle in edge.angles)
     left = segments([(start, sign * first), (near[0], sign * first), near])
     return [*left, *curve, *segments([far, (far[0], sign * last), (end, sign * last)])]
 
 
-def _at(edge: HingeEdge, sign: float) -> Callable[[float], tuple[float, float]]:
-    def at(angle: float) -> tuple[float, float]:
-        x, y = edge.at(angle)
-        return x, sign * y
-
-    return at
-
-
 def _arcs(edge: HingeEdge, sign: float) -> _Curve:
     """Two arcs with straight parts between them, which meet at the neck, where the mesh must be fine; one smooth curve in a stage."""
-    first, last = edge.angles
-    at, tiny = _at(edge, sign), np.finfo(float).tiny
+    (first, last), tiny = edge.angles, np.finfo(float).tiny
     if edge.stubs is None and not isinstance(edge.profile, Filleted):
         if not isinstance(edge.profile, Elliptic):
-            return [_arc(at, first, last)]
-        return [occ.SplineInterpolation([occ.Pnt(*at(float(angle)), 0) for angle in np.linspace(first, last, _STATIONS)])]
+            return [_arc(edge, sign, first, last)]
+        return [occ.SplineInterpolation([occ.Pnt(*edge.at(float(angle), sign), 0) for angle in np.linspace(first, last, _STATIONS)])]
     if isinstance(edge.profile, Elliptic):
         return _ellipse(edge, sign)
-    return [_arc(at, first, -tiny), *segments([at(-tiny), at(tiny)]), _arc(at, tiny, last)]
+    return [_arc(edge, sign, first, -tiny), *segments([edge.at(-tiny, sign), edge.at(tiny, sign)]), _arc(edge, sign, tiny, last)]
 
 
-def _arc(at: Callable[[float], tuple[float, float]], first: float, last: float) -> occ.TopoDS_Shape:
-    points = [occ.Pnt(*at(angle), 0) for angle in (first, 0.5 * (first + last), last)]
-    return occ.ArcOfCircle(*points)
+def _arc(edge: HingeEdge, sign: float, first: float, last: float) -> occ.TopoDS_Shape:
+    return arc([edge.at(angle, sign) for angle in (first, 0.5 * (first + last), last)])
 
 
 def _ellipse(edge: HingeEdge, sign: float) -> _Curve:
