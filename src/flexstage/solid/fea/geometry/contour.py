@@ -74,7 +74,7 @@ def extrude_outline(edges: Sequence[occ.TopoDS_Shape], width: float) -> occ.Topo
 
     The outline is counter-clockwise: the extrusion along +z then gives a positive volume.
 
-    >>> extrude_outline(segments([(0, 0), (1, 0), (1, 1), (0, 0)]), 2.0).mass
+    >>> round(extrude_outline(segments([(0, 0), (1, 0), (1, 1), (0, 0)]), 2.0).mass, 9)
     1.0
     """
     return occ.Face(occ.Wire(edges)).Extrude(occ.Vec(0, 0, width)).Move(occ.Vec(0, 0, -0.5 * width))

@@ -25,8 +25,6 @@ _WITHIN = [(2 / 3, 1 / 6), (1 / 6, 2 / 3), (1 / 6, 1 / 6)]
 """Points within a triangle, in the order of the triangle's corners."""
 _CONTINUED = 2.0 * np.eye(3) - np.full((3, 3), 1.0 / 3.0)
 """Linear extrapolation from the points within to the corners: 5/3 of the nearest point's value minus 1/3 of the other values."""
-_EVEN = frozenset((order + 1) * (order + 2) * (order + 3) // 6 for order in range(1, 12))
-"""Numbers of basis functions of elements in which all functions have one order."""
 _LEAST_WEIGHT = 1e-12
 _NEAR = 1e-9
 """Tolerance for points in a plane, divided by the drawing's size."""
@@ -95,37 +93,22 @@ def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
 
 
 def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Any:
-    """Operator of the derivatives along x, y and z [1/m] at points within each triangle, of the scalar functions of the elements behind.
-
-    Elements of one order with corners numbered in the same order have the same functions: those are evaluated once.
-    """
+    """Operator of the derivatives along x, y and z [1/m] at points within each triangle, of the scalar functions of the elements behind."""
     scalar, mesh = space.space.components[0], space.meshed.mesh
     turned = ngsolve.BoundaryFromVolumeCF(ngsolve.specialcf.JacobianMatrix(3))(points)
     inverse = MILLIMETRES * np.linalg.inv(np.asarray(turned).reshape(len(behind), 3, 3, 3))
     weights = np.array([(a, b, 1.0 - a - b) for a, b in _WITHIN])
-    elements = [ngsolve.ElementId(ngsolve.VOL, int(number)) for number in behind]
-    nodes = [scalar.GetDofNrs(element) for element in elements]
-    alike: dict[tuple[int, ...], list[int]] = {}
-    for triangle, element in enumerate(elements):
+    values, columns = list[Array](), list[Array]()
+    for triangle, number in enumerate(behind.tolist()):
+        element = ngsolve.ElementId(ngsolve.VOL, number)
         members = [vertex.nr for vertex in mesh[element].vertices]
-        places = (members.index(corner) for corner in corners[triangle])
-        own = len(nodes[triangle])
-        key = (own, *places, *np.argsort(members)) if own in _EVEN else (-triangle,)
-        alike.setdefault(key, []).append(triangle)
-    starts = np.concatenate([[0], np.cumsum(np.repeat([len(each) for each in nodes], 9))])
-    values, columns = np.empty(starts[-1]), np.empty(starts[-1], dtype=np.int64)
-    for triangles in alike.values():
-        first = triangles[0]
-        members = [vertex.nr for vertex in mesh[elements[first]].vertices]
-        share = np.zeros((3, 4))
-        share[:, [members.index(corner) for corner in corners[first]]] = weights
-        function = scalar.GetFE(elements[first])
+        share, function = np.zeros((3, 4)), scalar.GetFE(element)
+        share[:, [members.index(corner) for corner in corners[triangle]]] = weights
         shapes = np.stack([np.array(function.CalcDShape(*point[:3]).NumPy()) for point in share])
-        slopes = (shapes @ inverse[triangles]).transpose(0, 1, 3, 2)  # by triangle, point, derivative, function
-        at = starts[9 * np.array(triangles)][:, None] + np.arange(slopes[0].size)
-        values[at] = slopes.reshape(len(triangles), -1)
-        columns[at] = np.tile(np.array([nodes[triangle] for triangle in triangles]), 9)
-    return scipy.sparse.csr_array((values, columns, starts), shape=(len(starts) - 1, scalar.ndof))
+        values.append((shapes @ inverse[triangle]).transpose(0, 2, 1).ravel())  # by point, derivative, function
+        columns.append(np.tile(scalar.GetDofNrs(element), 9))
+    starts = np.concatenate([[0], np.cumsum(np.repeat([len(each) // 9 for each in values], 9))])
+    return scipy.sparse.csr_array((np.concatenate(values), np.concatenate(columns), starts), shape=(len(starts) - 1, scalar.ndof))
 
 
 def _media(space: Field) -> Array:
