@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.assembly.pattern import copy_names
@@ -56,19 +56,13 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (),
     for gauge in gauges:
         link = placed[gauge]
         owner = next((name for name, stack in strokes.items() if link == stack or _unit(link) == _unit(stack) != ""), None)
-        require(
-            []
-            if owner is not None
-            else [Finding(f"damping.gauges {gauge}", f"{link} is not in a leg of an actuator", "Use a gauge in a leg")]
-        )
-        if owner is not None:
-            part = assembly.gauges[gauge].gauge
-            noise = None if part.noise_density is None else float(part.noise_density) * _axial(model, link)
-            found[owner] = replace(found[owner], sensed=link, noise=noise, lag=None if part.bandwidth is None else float(part.bandwidth))
-    if not gauges:
-        return tuple(found.values())
+        if owner is None:
+            raise refuse(f"damping.gauges {gauge}", f"{link} is not in a leg of an actuator", "Use a gauge in a leg")
+        part = assembly.gauges[gauge].gauge
+        noise = None if part.noise_density is None else float(part.noise_density) * _axial(model, link)
+        found[owner] = replace(found[owner], sensed=link, noise=noise, lag=None if part.bandwidth is None else float(part.bandwidth))
     sensed = {placed[gauge] for gauge in gauges}
-    return tuple(each for each in found.values() if each.sensed in sensed)
+    return tuple(each for each in found.values() if not gauges or each.sensed in sensed)
 
 
 def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 0.0) -> LinearModel:

@@ -45,8 +45,7 @@ def zv(frequency: float, damping: float) -> Shaper:
     >>> zv(50.0, 0.0).times.tolist(), zv(50.0, 0.0).amplitudes.tolist()
     ([0.0, 0.01], [0.5, 0.5])
     """
-    factor, half = _factor(frequency, damping)
-    return Shaper(np.array([0.0, half]), np.array([1.0, factor]) / (1.0 + factor))
+    return _shaper(frequency, damping, 1)
 
 
 def zvd(frequency: float, damping: float) -> Shaper:
@@ -57,11 +56,11 @@ def zvd(frequency: float, damping: float) -> Shaper:
     >>> zvd(50.0, 0.0).amplitudes.tolist()
     [0.25, 0.5, 0.25]
     """
-    factor, half = _factor(frequency, damping)
-    return Shaper(np.array([0.0, half, 2.0 * half]), np.array([1.0, 2.0 * factor, factor**2]) / (1.0 + factor) ** 2)
+    return _shaper(frequency, damping, 2)
 
 
-def _factor(frequency: float, damping: float) -> tuple[float, float]:
+def _shaper(frequency: float, damping: float, order: int) -> Shaper:
+    """Impulses (1 + K z)^n / (1 + K)^n, with z half a damped period late."""
     found = [] if frequency > 0.0 else [Finding("shaper", f"frequency must be positive (got {frequency:g} Hz)", "Use e.g. 100 Hz")]
     if not 0.0 <= damping < 1.0:
         found.append(
@@ -73,4 +72,6 @@ def _factor(frequency: float, damping: float) -> tuple[float, float]:
         )
     require(found)
     root = float(np.sqrt(1.0 - damping**2))
-    return float(np.exp(-damping * np.pi / root)), 0.5 / (frequency * root)
+    factor = float(np.exp(-damping * np.pi / root))
+    amplitudes = np.polynomial.polynomial.polypow([1.0, factor], order) / (1.0 + factor) ** order
+    return Shaper(0.5 / (frequency * root) * np.arange(order + 1.0), amplitudes)

@@ -231,16 +231,15 @@ def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:
 
 def _force_findings(kinematics: Kinematics, setup: LoopSetup) -> Iterator[Finding]:
     """Findings for stack options of a force-driven stage."""
-    if kinematics.thrusts and setup.hysteresis is not None:
-        yield Finding(
-            "hysteresis",
-            f"hysteresis needs stacks, but the stage has force actuators ({', '.join(kinematics.thrusts)})",
-            "Remove hysteresis",
-        )
-    if kinematics.thrusts and setup.amplifier.settings.charge is not None:
-        what = f"charge drive needs stacks, but the stage has force actuators ({', '.join(kinematics.thrusts)})"
-        yield Finding("amplifier.kind", what, 'Remove kind = "charge": coil amplifiers control the current')
-    if kinematics.thrusts and Compensation.LOAD in setup.compensate:
+    thrusts = f"but the stage has force actuators ({', '.join(kinematics.thrusts)})"
+    if not kinematics.thrusts:
+        return
+    if setup.hysteresis is not None:
+        yield Finding("hysteresis", f"hysteresis needs stacks, {thrusts}", "Remove hysteresis")
+    if setup.amplifier.settings.charge is not None:
+        advice = 'Remove kind = "charge": coil amplifiers control the current'
+        yield Finding("amplifier.kind", f"charge drive needs stacks, {thrusts}", advice)
+    if Compensation.LOAD in setup.compensate:
         what = "load compensation is not supported for force actuators"
         yield Finding("compensate", what, 'Remove "load" from compensate: the integrator of the controller supplies the forces')
 

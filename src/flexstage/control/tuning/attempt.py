@@ -55,9 +55,9 @@ _Options: TypeAlias = tuple[tuple[tuple[Notch, ...], ...], ...]
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """Design attempt on the plant `seen`: a controller, its notches by loop, and its open-loop responses `gains` (see `open_gains`)."""
+    """Design attempt of a `trial`: a controller, its notches by loop, and its open-loop responses `gains` (see `open_gains`)."""
 
-    seen: View
+    trial: BandwidthTrial
     controller: Decentralised | LQG
     gains: Array
     notches: tuple[tuple[Notch, ...], ...]
@@ -65,17 +65,18 @@ class Attempt:
     @cached_property
     def system(self) -> System:
         """Controller as a system, sampled like the plant."""
-        return self.controller.system(self.seen.step)
+        return self.controller.system(self.trial.seen.step)
 
     @cached_property
     def judgement(self) -> Judgement:
         """Evaluation of the closed loop."""
-        return judge_loop(self.seen, self.system, self.gains)
+        return judge_loop(self.trial.seen, self.system, self.gains)
 
-    def reaches(self, frequency: float, spec: TuningSpec) -> bool:
-        """Whether the loop is stable with peaks within the limit, and every crossover is within 1 % of `frequency` [Hz]."""
-        passed = all(abs(each / frequency - 1.0) < 0.01 for each in own_bandwidths(self.seen, self.gains))
-        return passed and keeps_peak(self.seen, lambda: self.system, self.gains, spec.sensitivity)
+    def reaches(self) -> bool:
+        """Whether the loop is stable with peaks within the limit, and every crossover is within 1 % of the trial's frequency."""
+        seen, spec, frequency = self.trial.seen, self.trial.spec, self.trial.frequency
+        passed = all(abs(each / frequency - 1.0) < 0.01 for each in own_bandwidths(seen, self.gains))
+        return passed and keeps_peak(seen, lambda: self.system, self.gains, spec.sensitivity)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,26 +107,26 @@ class BandwidthTrial:
         """Return the first attempt that meets crossover and specification, else the attempt with the best score; None if no law exists."""
         tried: list[Attempt] = []
         for found in self._attempts(0.0):
-            if found.reaches(self.frequency, self.spec):
+            if found.reaches():
                 return found
             tried.append(found)
         return min(tried, key=lambda each: each.judgement.score, default=None)
 
     def reach(self, calm: float = 0.0) -> Attempt | None:
         """Return the first attempt that meets frequency and specification, else None; unlike `best`, it does not rank failed attempts."""
-        return next((found for found in self._attempts(calm) if found.reaches(self.frequency, self.spec)), None)
+        return next((found for found in self._attempts(calm) if found.reaches()), None)
 
     def _attempts(self, calm: float) -> Iterator[Attempt]:
         """Attempts, simplest first."""
         if self.spec.family == LQG_FAMILY:
-            yield from _attempts_lqg(self.seen, self.spec, self.frequency)
+            yield from _attempts_lqg(self)
             return
         first = self._decentralised(calm, ((self.spec.notches,),) * len(self.seen.loops.names))
         if first is None:
             return
         yield first
         if self.spec.automatic and self.spec.family.notched:
-            every = (self._decentralised(calm, options) for options in _choices(_place_notches(self.seen, first, self.frequency)))
+            every = (self._decentralised(calm, options) for options in _choices(_place_notches(first)))
             yield from (each for each in every if each is not None)
 
     def _decentralised(self, calm: float, options: _Options) -> Attempt | None:
@@ -141,7 +142,7 @@ class BandwidthTrial:
         laws = tuple(each.law for each in found)
         controller = Decentralised(seen.loops, laws, notches if any(notches) else (), self.spec.feedforward)
         gains = seen.driven * np.stack([each.response for each in found], axis=-1)[:, None, :]
-        return Attempt(seen, controller, gains, notches)
+        return Attempt(self, controller, gains, notches)
 
     def _choose(self, sets: tuple[tuple[Notch, ...], ...], loop: int, calm: float) -> _Chosen | None:
         """Law and notches of the lowest peak of S, with a stable isolated loop and its crossover at the frequency, for all mode shifts.
@@ -250,9 +251,9 @@ def _encircles(frequencies: Array, gains: Array) -> Array:
     return np.abs(angles[..., -1] + 2.0 * np.pi * (turns + begun)) > 1.0
 
 
-def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
+def _place_notches(found: Attempt) -> _Options:
     """By loop, sets of notches of several widths on significant modes above the crossover; empty without any."""
-    gains = np.abs(found.gains[0])
+    seen, frequency, gains = found.trial.seen, found.trial.frequency, np.abs(found.gains[0])
     result = []
     for loop, given in enumerate(found.notches):
         own = gains[:, loop, loop]
@@ -266,8 +267,9 @@ def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
     return tuple(sets or (given,) for sets, given in zip(result, found.notches, strict=True)) if any(result) else ()
 
 
-def _attempts_lqg(seen: View, spec: TuningSpec, frequency: float) -> Iterator[Attempt]:
+def _attempts_lqg(trial: BandwidthTrial) -> Iterator[Attempt]:
     """Iterate weights by coordinate until every loop's crossover is at the frequency, with observers of decreasing model confidence."""
+    seen, spec, frequency = trial.seen, trial.spec, trial.frequency
     driven = driven_gains(seen, frequency)
     first = wanted = frequency / driven
     for trust in _trusts(seen, spec, frequency, driven):
@@ -275,7 +277,7 @@ def _attempts_lqg(seen: View, spec: TuningSpec, frequency: float) -> Iterator[At
         found, wanted = _balance_bandwidths(seen, design, frequency, wanted, first)
         if found is not None:
             gains = seen.responses @ _strokes(seen, found, design.estimates, seen.frequencies)
-            yield Attempt(seen, found, gains, ((),) * len(wanted))
+            yield Attempt(trial, found, gains, ((),) * len(wanted))
 
 
 def driven_gains(seen: View, frequency: float) -> Array:

@@ -743,7 +743,8 @@ def _coupled(within: Field, whole: Array, slopes: Mapping[int, Array]) -> tuple[
     """Excess of singular values of S: d sigma = -Re(sum_j u^H T_j S_j v dlnC_j), u and v its directions."""
     limits = np.array([each.limit for each in within.variants])[:, None] * _INSIDE * np.ones(whole.shape[:2])
     over = np.linalg.norm(whole, axis=(-2, -1)) > limits  # the sum of all squared is above the largest
-    values, right = _largest_gains(whole[over])
+    _, gains, right = np.linalg.svd(whole[over])
+    values, right = gains[:, 0], np.conj(right[:, 0, :])
     high = values > limits[over]
     chosen, limit, value, v = whole[over][high], limits[over][high], values[high], right[high]
     u = np.conj(np.einsum("rij,rj->ri", chosen, v)) / value[:, None]
@@ -751,19 +752,6 @@ def _coupled(within: Field, whole: Array, slopes: Mapping[int, Array]) -> tuple[
     chosen_slopes = [each[:, over][:, high] * _of_first(gains, first, within.alike) for first, each in slopes.items()]
     changes = -np.real(np.concatenate(chosen_slopes)) / limit
     return STIFF * (value / limit - 1.0), STIFF * changes
-
-
-def _largest_gains(given: Array) -> tuple[Array, Array]:
-    """Largest singular values (r,) of matrices (r, k, k), and their directions v (r, k)."""
-    if given.shape[-1] != 2:
-        _, values, right = np.linalg.svd(given)
-        return values[:, 0], np.conj(right[:, 0, :])
-    squares = np.conj(np.swapaxes(given, -1, -2)) @ given
-    first, second, across = np.real(squares[:, 0, 0]), np.real(squares[:, 1, 1]), squares[:, 0, 1]
-    value = 0.5 * (first + second) + np.hypot(0.5 * (first - second), np.abs(across))
-    larger, least = first >= second, 1e-100  # any direction if both are equal
-    v = np.stack([np.where(larger, value - second + least, across), np.where(larger, np.conj(across), value - first)], axis=-1)
-    return np.sqrt(value), v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
 def _shapes(within: Field, family: Family) -> tuple[Shape, ...]:

@@ -50,26 +50,21 @@ def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     loops = platform_loops(loops.coordinates) if spec.family == LQG_FAMILY else loops
     require(_findings(plant, spec))
     seen = view(plant, loops, spec.spread)
-    trial, best = highest_bandwidth(seen, spec) if spec.bandwidth is None else _at(seen, spec, spec.bandwidth)
-    if trial is None or best is None or not best.reaches(trial.frequency, spec):
+    best = highest_bandwidth(seen, spec) if spec.bandwidth is None else BandwidthTrial(seen, spec, spec.bandwidth).best()
+    if best is None or not best.reaches():
         raise DesignError([_no_bandwidth(seen, spec) if spec.bandwidth is None else _unreached(seen, spec, best, spec.bandwidth)])
-    best = _stiffest(trial, best)
-    return Tuning(spec, best.controller, best.judgement, _sentence(spec, best, trial.frequency))
+    best = _stiffest(best)
+    return Tuning(spec, best.controller, best.judgement, _sentence(best))
 
 
-def _at(seen: View, spec: TuningSpec, frequency: float) -> tuple[BandwidthTrial, Attempt | None]:
-    trial = BandwidthTrial(seen, spec, frequency)
-    return trial, trial.best()
-
-
-def _stiffest(trial: BandwidthTrial, found: Attempt) -> Attempt:
+def _stiffest(found: Attempt) -> Attempt:
     """Higher static gain at the same bandwidth, within the same peak of S: the lowest peak by itself leaves slow tails.
 
     Part of the peak limit is a reserve for coupling.
     """
-    if trial.spec.family not in (PI_FAMILY, PID_FAMILY):
+    if found.trial.spec.family not in (PI_FAMILY, PID_FAMILY):
         return found
-    tried = [trial.reach(share * trial.spec.sensitivity) for share in _CALM]
+    tried = [found.trial.reach(share * found.trial.spec.sensitivity) for share in _CALM]
     return max([found, *(each for each in tried if each is not None)], key=_weakest)
 
 
@@ -97,8 +92,8 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
     return places
 
 
-def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
-    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller. Both are None if no bandwidth is possible.
+def highest_bandwidth(seen: View, spec: TuningSpec) -> Attempt | None:
+    """Find the controller of the highest bandwidth with the specified margins, within 0.3 %; None if no bandwidth is possible.
 
     The highest of the `trial_bandwidths` that succeeds is refined by bisection, up to the next higher trial bandwidth. Other controllers
     may reach higher bandwidths.
@@ -108,28 +103,27 @@ def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | No
     >>> from flexstage.control.tuning.spec import TuningSpec
     >>> plant = integral_loop().plant
     >>> seen = view(plant, platform_loops(plant.coordinates), 0.02)
-    >>> round(highest_bandwidth(seen, TuningSpec(PI_FAMILY, automatic=False))[0].frequency)
+    >>> round(highest_bandwidth(seen, TuningSpec(PI_FAMILY, automatic=False)).trial.frequency)
     56
     """
     places = trial_bandwidths(seen, spec.family.steps)
     for number, place in enumerate(places):
         report(number / len(places), "tuning")
-        trial = BandwidthTrial(seen, spec, place)
-        found = trial.reach()
+        found = BandwidthTrial(seen, spec, place).reach()
         if found is not None:
-            return _bisect(trial, found, places[number - 1] if number else place)
-    return None, None
+            return _bisect(found, places[number - 1] if number else place)
+    return None
 
 
-def _bisect(low: BandwidthTrial, best: Attempt, high: float) -> tuple[BandwidthTrial, Attempt]:
-    while high > _WITHIN * low.frequency:
-        middle = replace(low, frequency=float(np.sqrt(low.frequency * high)))
+def _bisect(best: Attempt, high: float) -> Attempt:
+    while high > _WITHIN * best.trial.frequency:
+        middle = replace(best.trial, frequency=float(np.sqrt(best.trial.frequency * high)))
         found = middle.reach()
-        if found is not None:
-            low, best = middle, found
-        else:
+        if found is None:
             high = middle.frequency
-    return low, best
+        else:
+            best = found
+    return best
 
 
 def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
@@ -150,13 +144,13 @@ def _no_bandwidth(seen: View, spec: TuningSpec) -> Finding:
 
 
 def _unreached(seen: View, spec: TuningSpec, best: Attempt | None, wanted: float) -> Finding:
-    trial, reached = highest_bandwidth(seen, spec)
+    reached = highest_bandwidth(seen, spec)
     tried = _tried(trial_bandwidths(seen, spec.family.steps))
     rest, ask = f"no other bandwidth succeeds either ({tried})", "Allow a higher peak of S"
-    if trial is not None and reached is not None:
-        top = _three_digits(trial.frequency)
-        rest = f"the highest bandwidth found is {top} Hz with {_controller_name(spec, reached)} ({tried})"
-        ask = f"Use a higher bandwidth, up to {top} Hz" if wanted < trial.frequency else f"Use {top} Hz or less"
+    if reached is not None:
+        top = _three_digits(reached.trial.frequency)
+        rest = f"the highest bandwidth found is {top} Hz with {_controller_name(reached)} ({tried})"
+        ask = f"Use a higher bandwidth, up to {top} Hz" if wanted < reached.trial.frequency else f"Use {top} Hz or less"
     what = f"at {_three_digits(wanted)} Hz, {_reason(spec, best, wanted)}; {rest}"
     return Finding("bandwidth", what, f"{ask}; {_help(seen, spec, wanted)}")
 
@@ -169,7 +163,7 @@ def _reason(spec: TuningSpec, best: Attempt | None, wanted: float) -> str:
     """Reason of failure at a bandwidth."""
     if best is None:
         return f"no gains of {spec.family.name} result in a loop gain of 1"
-    found, called = best.judgement, _controller_name(spec, best)
+    found, called = best.judgement, _controller_name(best)
     if not found.stable:
         return f"the loop with {called} is unstable (growth rate {found.growth:.3g} 1/s{_offset_text(found)})"
     allowed = spec.sensitivity
@@ -185,9 +179,9 @@ def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
     """Remedies: notches, another kind, faster sampling; with the resulting bandwidth if computed."""
     found = []
     if not spec.automatic and spec.family != LQG_FAMILY:
-        trial, best = highest_bandwidth(seen, replace(spec, automatic=True))
-        if trial is not None and best is not None and any(best.notches):
-            found.append(f"add {_notch_places(best)} to reach a bandwidth of {_three_digits(trial.frequency)} Hz")
+        best = highest_bandwidth(seen, replace(spec, automatic=True))
+        if best is not None and any(best.notches):
+            found.append(f"add {_notch_places(best)} to reach a bandwidth of {_three_digits(best.trial.frequency)} Hz")
     if seen.step is not None:
         acts = wanted if spec.family.notched else max(wanted, float(seen.modes[0]))
         lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)
@@ -196,14 +190,16 @@ def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
     return "; ".join([*found, f"try {spec.family.others}, more damping, or a smaller spread of the modes"])
 
 
-def _sentence(spec: TuningSpec, best: Attempt, bandwidth: float) -> str:
+def _sentence(best: Attempt) -> str:
+    spec = best.trial.spec
     spread = f" with mode shifts up to {100.0 * spec.spread:g} %" if spec.spread else ""
     peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB ({_decibel(spec.sensitivity):.3g} dB allowed)"
-    return f"{_controller_name(spec, best)}: gain crossover of all loops at {_three_digits(bandwidth)} Hz; {peak}"
+    return f"{_controller_name(best)}: gain crossover of all loops at {_three_digits(best.trial.frequency)} Hz; {peak}"
 
 
-def _controller_name(spec: TuningSpec, best: Attempt) -> str:
-    return f"{spec.family.name} and {_notch_places(best)}" if any(best.notches) else spec.family.name
+def _controller_name(best: Attempt) -> str:
+    name = best.trial.spec.family.name
+    return f"{name} and {_notch_places(best)}" if any(best.notches) else name
 
 
 def _notch_places(best: Attempt) -> str:
