@@ -252,11 +252,9 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     if len(bare) < len(sensors) - len(silent):
         yield "gauge noise is assumed white before lag and filter; aliasing of its part above half the sampling rate is computed exactly"
     if budget.slowly_rounding:
-        units = {channel.name: channel.unit for channel in given.coordinates.readings()}
-        half = ", ".join(
-            _half_step([sensors[name] for name in budget.slowly_rounding if units[name] == unit], unit)
-            for unit in sorted({units[name] for name in budget.slowly_rounding})
-        )
+        units = {channel.name: channel.unit for channel in given.coordinates.readings() if channel.name in budget.slowly_rounding}
+        steps = {unit: max(sensors[name].resolution for name, own in units.items() if own == unit) for unit in sorted({*units.values()})}
+        half = ", ".join(f"{1e9 * 0.5 * step:.3g} n{unit}" for unit, step in steps.items())
         most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slowly_rounding)
         yield (
             f"rounding of the readings of {', '.join(budget.slowly_rounding)} is counted as white noise, but it is not white: from sample "
@@ -275,8 +273,3 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     if heard:
         legs = ", ".join(name.removeprefix(f"{SENSED}.") for name in heard)
         yield f"sensor noise of the legs of {legs} is {only}"
-
-
-def _half_step(sensors: list[Sensor], unit: str) -> str:
-    """Half the largest step of gauges of one unit, in nano-units."""
-    return f"{1e9 * 0.5 * max(sensor.resolution for sensor in sensors):.3g} n{unit}"

@@ -41,7 +41,6 @@ class ChargedStacks:
     residual_hysteresis: Annotated[Array, SHARE, Along("actuators"), Heading("residual hysteresis", digits=3)]
     by_volts: Annotated[Array, FREQUENCY, Heading("mode, voltage drive", digits=4)]
     by_charge: Annotated[Array, FREQUENCY, Heading("mode, charge drive", digits=4)]
-    drives: Annotated[Mapping[str, ChargeDrive], INNER]
 
     @property
     def rise(self) -> Annotated[Array, INNER, Heading("change", digits=3, unit="%")]:
@@ -109,5 +108,4 @@ def describe_charge(given: Plant, model: LinearModel, charged: LinearModel, driv
         residual_hysteresis=np.array([each.residual_hysteresis for each in every]),
         by_volts=pairs.others,
         by_charge=pairs.frequencies,
-        drives=drives,
     )

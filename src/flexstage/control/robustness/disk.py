@@ -128,7 +128,7 @@ def _search_bounds(moved: System, frequencies: Array) -> tuple[float, float, flo
             break
         ends = float(frequencies[max(top - 1, 0)]), float(frequencies[min(top + 1, len(frequencies) - 1)])
         at, above = _local_maximum(moved, ends)
-        below = lower_bound(moved.sweep(np.array([at]))[0])[0]
+        below = lower_bound(moved.sweep(np.array([at]))[0])
         highest = max(highest, above)
         if below > lowest:
             lowest, place = below, at

@@ -7,7 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from flexstage.base.finding import Finding
-from flexstage.control.study.choices import SEARCHED, Compensation, ControllerKind, Following, Notching
+from flexstage.control.study.choices import SEARCHED, Axis, Compensation, ControllerKind, Following, Notching
 from flexstage.control.study.setup import (
     ControllerSetup,
     DampingSetup,
@@ -19,7 +19,6 @@ from flexstage.control.study.setup import (
     LoopSetup,
     RasterMotion,
     SineMotion,
-    SpiralMotion,
     StepMotion,
     TrajectorySetup,
     VibrationSetup,
@@ -53,10 +52,9 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
 def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
     if isinstance(found, FileMotion) and not Path(found.file).is_file():
         yield Finding(found.file, "file not found", "Use the name of a CSV file with times and poses")
-    pair = (found.fast, found.slow) if isinstance(found, RasterMotion) else None
-    pair = (found.first, found.second) if isinstance(found, SpiralMotion) else pair
-    if pair is not None and pair[0] is pair[1]:
-        yield Finding("trajectory", f"both axes are {pair[0].value}", "Use two different axes")
+    axes = [each for each in vars(found).values() if isinstance(each, Axis)]
+    if len({*axes}) < len(axes):
+        yield Finding("trajectory", f"both axes are {axes[0].value}", "Use two different axes")
     limits = {} if not isinstance(found, StepMotion) else {name: getattr(found, name) for name in ("speed", "acceleration", "jerk")}
     missing = [name for name, value in limits.items() if value is None]
     if missing and len(missing) < len(limits):

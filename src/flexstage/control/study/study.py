@@ -291,38 +291,31 @@ def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
         yield Finding("gauges", what, advice)
 
 
-def _warnings(given: ResolvedSetup) -> list[Finding]:
+def _warnings(given: ResolvedSetup) -> Iterator[Finding]:
     """Warnings for missing data that are assumed ideal."""
-    found = []
     silent = [name for name, each in given.plant.hardware.sensors.items() if each.noise_density is None]
     if silent:
         what = f"no noise specified for {', '.join(silent)}: only quantisation is included"
-        found.append(Finding("gauges", what, "Specify noise_density in the design, or gauges.noise in the set-up"))
+        yield Finding("gauges", what, "Specify noise_density in the design, or gauges.noise in the set-up")
     if given.damping is not None:
         yielding = given.damping
         worst = int(np.argmin(yielding.softest))
         what = f"force feedback reduces the platform's dynamic stiffness to {100.0 * yielding.softest[worst]:.3g} %"
         advice = "The pose loop must supply the missing stiffness. For more stiffness, increase damping.corner or reduce damping.ratio"
-        found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
+        yield Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice)
         asked = None if given.setup.damping is None else given.setup.damping.ratio
         if asked is not None and yielding.reached < _ENOUGH * asked:
             what = f"damping ratio of a dominant mode too low (got {100.0 * yielding.reached:.3g} %, expected {100.0 * asked:.3g} %)"
             advice = "Use shorter delays, faster amplifiers and sensors, or a higher rate. Legs cannot damp modes that do not strain them"
-            found.append(Finding("damping.ratio", what, advice))
+            yield Finding("damping.ratio", what, advice)
         quiet = [each.actuator for each in yielding.sensed if each.noise is None]
         if quiet:
-            found.append(Finding("damping", f"no noise specified for the leg sensors of {', '.join(quiet)}", "Specify damping.noise"))
+            yield Finding("damping", f"no noise specified for the leg sensors of {', '.join(quiet)}", "Specify damping.noise")
     if given.setup.hysteresis is not None and given.charge is not None:
         left, corner = 100.0 * float(np.max(given.charge.residual_hysteresis)), float(np.max(given.charge.corners))
         what = f"above {corner:.3g} Hz, charge drive reduces the simulated hysteresis to {left:.3g} %; far below, the drive has no effect"
-        found.append(
-            Finding(
-                "hysteresis",
-                what,
-                "Specify amplifier.residual_hysteresis from a record with charge drive. Results of isolated stacks are for voltage drive",
-            )
-        )
+        advice = "Specify amplifier.residual_hysteresis from a record with charge drive. Results of isolated stacks are for voltage drive"
+        yield Finding("hysteresis", what, advice)
     if given.setup.hysteresis is not None:
         what = "margins, noise and poles do not include hysteresis and creep of the stacks"
-        found.append(Finding("hysteresis", what, "Use the simulated trajectories to judge these effects"))
-    return found
+        yield Finding("hysteresis", what, "Use the simulated trajectories to judge these effects")

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import require_positive
-from flexstage.control.trajectory.pieces import Pieces, join, smooth, smooth_time
+from flexstage.control.trajectory.pieces import Pieces, join, rest, smooth, smooth_time
 
 _STEEPEST = 10.0 / 3.0**0.5
 """Largest acceleration of a smooth move, times its time squared over its distance."""
@@ -39,8 +39,7 @@ class Raster(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        numbers = {"length": self.length, "pitch": self.pitch, "lines": self.lines, "speed": self.speed, "acceleration": self.acceleration}
-        require_positive("raster: ", numbers)
+        require_positive("raster: ", {name: value for name, value in vars(self).items() if name != "coordinates"})
 
     @property
     def overshoot(self) -> float:
@@ -116,7 +115,6 @@ class Raster(CheckedFields):
 
 def _even_piece(place: Array, speed: float, acceleration: float, time: float) -> tuple[float, Array]:
     """Piece of constant acceleration of the first coordinate."""
-    coefficients = np.zeros((6, len(place)))
-    coefficients[0] = place
+    coefficients = rest(place)
     coefficients[1, 0], coefficients[2, 0] = speed, 0.5 * acceleration
     return time, coefficients
