@@ -227,7 +227,11 @@ def compare(
 
     doubt = shape_doubt(sensors, seen, score, lambda: _scales(frequencies, experiment, groups, own, seen))
     right = pairs if doubt is None else _pair(frequencies, experiment, bases, unit_length(doubt.put_right(seen)))[0]
-    matched = _match_groups(groups, candidates, right)
+    matched = [
+        ([candidates[index] for index in group], [right[index] for index in group])
+        for group in groups
+        if all(index in right for index in group)
+    ]
     misnamed = gain_doubts(_residues(mechanism, linear, theory, experiment, sensors, matched=matched, doubt=doubt))
     misnamed = misnamed if doubt is None else (doubt.text, *misnamed)
     rows = _rows(theory, experiment, pairs, likeness)
@@ -338,12 +342,6 @@ def _sort_within_groups(found: dict[int, int], groups: list[list[int]]) -> dict[
     return ordered
 
 
-def _match_groups(groups: list[list[int]], candidates: tuple[int, ...], pairs: dict[int, int]) -> list[tuple[list[int], list[int]]]:
-    """Model modes of fully identified groups, and the measured ones."""
-    whole = (group for group in groups if all(index in pairs for index in group))
-    return [([candidates[index] for index in group], [pairs[index] for index in group]) for group in whole]
-
-
 def _residues(
     mechanism: Mechanism,
     model: LinearModel,
@@ -354,7 +352,7 @@ def _residues(
     matched: list[tuple[list[int], list[int]]],
     doubt: SuspectedFault | None,
 ) -> Residues:
-    """Modal gains of model and test between shared sensors and inputs: repeated modes together, independent of the basis.
+    """Modal gains of model and test between shared sensors and inputs, for the `matched` modes of fully identified groups together.
 
     Outputs are corrected for their suspected faults.
     """
@@ -429,14 +427,13 @@ def _error(fea: FeaModes, pair: Pair) -> float | None:
 
 def _repeated_modes(group: list[int], pairs: dict[int, int], own: Array, seen: Array) -> RepeatedModes:
     members = [pairs[index] for index in group if index in pairs]
-    numbers = tuple(index + 1 for index in group)
-    if len(members) < len(group):
-        return RepeatedModes(numbers, len(members), None)
-    first, second = _basis(own[:, group]), _basis(seen[:, members])
-    if first.shape != second.shape:
-        return RepeatedModes(numbers, len(members), None)
-    cosines = np.linalg.svd(first.T @ second, compute_uv=False)
-    return RepeatedModes(numbers, len(members), float(np.arccos(np.clip(cosines[-1], 0.0, 1.0))))
+    angle = None
+    if len(members) == len(group):
+        first, second = _basis(own[:, group]), _basis(seen[:, members])
+        if first.shape == second.shape:
+            cosines = np.linalg.svd(first.T @ second, compute_uv=False)
+            angle = float(np.arccos(np.clip(cosines[-1], 0.0, 1.0)))
+    return RepeatedModes(tuple(index + 1 for index in group), len(members), angle)
 
 
 def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> Iterator[str]:

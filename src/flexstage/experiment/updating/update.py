@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Annotated, Any, ClassVar
 
@@ -308,7 +308,8 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     model = start_design(freed.mechanism, ()).model
     gains = None
     if known.gain_error is not None:
-        gains = measured_gains(mechanism, model, experiment, shared_sensors(model, experiment))
+        noise = measured_gains(mechanism, model, experiment, shared_sensors(model, experiment))
+        gains = replace(noise, deviations=noise.errors(known.gain_error))
     compared = compare(freed.mechanism, experiment, loaded=False)
     rows = mode_rows(freed.mechanism, compared, experiment)
     require(_too_few_data(experiment, rows, freed, gains))
@@ -332,7 +333,10 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
 
 @dataclass(frozen=True, eq=False)
 class _Data:
-    """Data with their weights, and the least-squares problem for free numbers; `gains` is absent without a comparison of gains."""
+    """Data with their weights, and the least-squares problem for free numbers.
+
+    The deviations of `gains` include the `gain_error`; `gains` is absent without a comparison of gains.
+    """
 
     freed: Free
     known: Prior
@@ -357,7 +361,7 @@ class _Data:
         measured = np.array([row.frequency for row in self.rows])
         parts = [np.log(measured / design.frequencies) / self.frequency_error]
         if self.gains is not None:
-            parts.append(((self.gains.values - static_gains(design, self.gains)) / self._gain_errors(self.gains)).ravel())
+            parts.append(((self.gains.values - static_gains(design, self.gains)) / self.gains.deviations).ravel())
         return np.concatenate(parts)
 
     def slopes(self, design: Design) -> Array:
@@ -366,7 +370,7 @@ class _Data:
         values = self.freed.deviations * np.array([get(design.mechanism, name) for name in names])
         parts = [frequency_slopes(design, names) * values / self.frequency_error[:, None]]
         if self.gains is not None:
-            weighted = gain_slopes(design, names, self.gains) * values / self._gain_errors(self.gains)[..., None]
+            weighted = gain_slopes(design, names, self.gains) * values / self.gains.deviations[..., None]
             parts.append(weighted.reshape(-1, len(names)))
         return np.concatenate(parts)
 
@@ -378,14 +382,11 @@ class _Data:
             return
         first, last = static_gains(before, self.gains), static_gains(after, self.gains)
         scale = self.gains.scale
-        errors = self._gain_errors(self.gains) / scale
+        errors = self.gains.deviations / scale
         for (row, column), value in np.ndenumerate(self.gains.values):
             name = f"gain {self.gains.outputs[row]}/{self.gains.inputs[column]}"
             numbers = (float(value), float(errors[row, column]), float(first[row, column]), float(last[row, column]))
             yield Residual(name, self.gains.units[row][column], *numbers, float(scale[column]))
-
-    def _gain_errors(self, gains: Gains) -> Array:
-        return gains.errors(self.known.gain_error or 0.0)
 
 
 def _as_result(data: _Data, found: Fitted[Design], compared: Compared, steps: int) -> Updated:

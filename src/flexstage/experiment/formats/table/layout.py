@@ -85,20 +85,21 @@ def read_layout(path: Path) -> Layout:
     require_regular(path)
     with path.open("rb") as stream:
         raw = stream.read(_HEAD)
-    lines, encoding = _lines(raw, path)
+    where = str(path)
+    lines, encoding = _lines(raw, where)
     for number, line in enumerate(lines):
         form = _form(lines[number : number + _LOOKED_AT]) if _may_be_numbers(line) else None
         if form is not None:
             delimiter, decimal, columns = form
-            require(_broken_row(path, lines[:number], form))
+            require(_broken_row(where, lines[:number], form))
             head = [_COMMENT.sub("", each) for each in lines[:number]]
-            names, units = _header(head, delimiter, columns, path)
+            names, units = _header(head, delimiter, columns, where)
             start = sum(len(each.encode(encoding)) for each in lines[:number]) + (3 if raw.startswith(b"\xef\xbb\xbf") else 0)
             return Layout(names, units, delimiter, decimal, start, number + 1, encoding, tuple(each.strip() for each in head))
-    raise refuse(str(path), f"no line of numbers was found in its first {len(lines)} lines", _EXAMPLE)
+    raise refuse(where, f"no line of numbers was found in its first {len(lines)} lines", _EXAMPLE)
 
 
-def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int]) -> Iterator[Finding]:
+def _broken_row(where: str, above: list[str], form: tuple[str | None, str, int]) -> Iterator[Finding]:
     """Line that separates rows of numbers above from those below, which would make all of them a header."""
     rows = [number for number, line in enumerate(above) if _is_row(line)]
     if rows:
@@ -109,7 +110,7 @@ def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int])
         wrong = "a field is not a number" if count == columns else f"wrong number of fields (got {count}, expected {columns})"
         what = f'{wrong} in a line between rows of numbers: "{line}"'
         yield Finding(
-            f"{path}:{at + 1}", what, f'Correct this line; if line {rows[0] + 1} is not a row of numbers, start that line with "#"'
+            f"{where}:{at + 1}", what, f'Correct this line; if line {rows[0] + 1} is not a row of numbers, start that line with "#"'
         )
 
 
@@ -121,15 +122,15 @@ def _is_row(line: str) -> bool:
     return any(len(fields) > 1 and all(NUMBER.fullmatch(field) for field in fields) for fields in divided)
 
 
-def _lines(raw: bytes, path: Path) -> tuple[list[str], str]:
+def _lines(raw: bytes, where: str) -> tuple[list[str], str]:
     """First lines with their ends, and the encoding; a truncated last line is omitted if others exist."""
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise refuse(str(path), "it is UTF-16 text", "Save it as UTF-8")
+        raise refuse(where, "it is UTF-16 text", "Save it as UTF-8")
     if b"\x00" in raw:
-        raise refuse(str(path), "it is neither text nor in a supported format of records", "Export UFF, MAT, HDF5 or CSV")
+        raise refuse(where, "it is neither text nor in a supported format of records", "Export UFF, MAT, HDF5 or CSV")
     raw = raw.removeprefix(b"\xef\xbb\xbf")
     if b"\r" in raw and b"\n" not in raw:
-        raise refuse(str(path), "its lines end in carriage returns only", "Save it with line feeds")
+        raise refuse(where, "its lines end in carriage returns only", "Save it with line feeds")
     lines = io.BytesIO(raw).readlines()
     whole = lines[:-1] if len(lines) > 1 and len(raw) > _HEAD - 8 else lines
     try:
@@ -168,14 +169,14 @@ def _fields(line: str, delimiter: str | None) -> list[str]:
         return [line]
 
 
-def _header(head: list[str], delimiter: str | None, columns: int, path: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _header(head: list[str], delimiter: str | None, columns: int, where: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the line above the numbers; a line of units belongs to the one above it. Preambles are ignored."""
     found = list(_candidates(head, delimiter, columns))
     if not found:
         last = next((line.strip() for line in reversed(head) if line.strip()), "")
         what = "have no header" if not last else f'are not named by the line above them: "{last[:_QUOTED]}"'
         example = (delimiter or " ").join((*_NAMES, *(f"S{number} [um]" for number in range(2, columns - 1)))[:columns])
-        raise refuse(str(path), f"its {columns} columns {what}", f'Name each column in the line above the numbers, such as "{example}"')
+        raise refuse(where, f"its {columns} columns {what}", f'Name each column in the line above the numbers, such as "{example}"')
     if len(found) > 1 and all(unit_problem(plain_unit(text)) is None or not plain_unit(text) for text in found[0]):
         return number_names(_name_and_unit(text)[0] for text in found[1]), tuple(plain_unit(text) for text in found[0])
     pairs = [_name_and_unit(text) for text in found[0]]

@@ -183,11 +183,12 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
     low orders, and spurious poles bias high orders: the order is therefore selected for each mode (`_select_order`).
     """
     outputs = band.covariances.shape[2]
-    diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)
+    least = _rows(outputs, np.inf)
+    diagram, found = _with_rows(band, least, highest_damping)
     sure = [-mode.pole.real / abs(mode.pole) for mode in found if -mode.pole.real > _SURE * mode.width_deviation]
     most = (band.covariances.shape[1] - _SKIPPED) // 2
-    longer = min(most, _rows(outputs, min(sure))) if sure else _rows(outputs, np.inf)
-    return _with_rows(band, longer, highest_damping) if longer > 1.5 * _rows(outputs, np.inf) else (diagram, found)
+    longer = min(most, _rows(outputs, min(sure, default=np.inf)))
+    return _with_rows(band, longer, highest_damping) if longer > 1.5 * least else (diagram, found)
 
 
 def _with_rows(band: Band, rows: int, highest_damping: float) -> tuple[Stabilisation, list[AmbientMode]]:
@@ -274,8 +275,9 @@ def _of_order(band: Band, left: Array, blocks: Sequence[tuple[Array, Array]], ca
 
 def _select_order(track: Sequence[_Estimate]) -> AmbientMode:
     """Mode at the order, ascending, of lowest variance plus squared bias, with the bias from higher orders."""
-    chosen = int(np.argmin([np.sum(_risk(index, [each.poles() for each in track])[0]) for index in range(len(track))]))
-    width, deviation = np.sqrt(np.sum(_risk(chosen, [each.poles() for each in track]), axis=0))
+    poles = [each.poles() for each in track]
+    chosen = int(np.argmin([np.sum(_risk(index, poles)[0]) for index in range(len(poles))]))
+    width, deviation = np.sqrt(np.sum(_risk(chosen, poles), axis=0))
     best = track[chosen]
     largest = int(np.argmax(np.abs(best.shape)))
     parts = np.sum(_risk(chosen, [each.shapes(largest) for each in track]), axis=0).reshape(2, -1)
