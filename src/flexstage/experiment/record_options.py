@@ -197,11 +197,13 @@ def _repeated(paths: Sequence[Path]) -> Iterator[Finding]:
 
 
 def _units(texts: Sequence[str] | None, findings: list[Finding]) -> tuple[tuple[str, str], ...]:
-    pairs = [tuple(part.strip() for part in text.rpartition("=")[::2]) for text in texts or ()]
-    for text, (name, unit) in zip(texts or (), pairs, strict=True):
-        if not name or not unit:
+    pairs = list[tuple[str, str]]()
+    for text in texts or ():
+        listed, _, unit = (part.strip() for part in text.rpartition("="))
+        if not listed or not unit:
             findings.append(Finding(f"--units {text}", "channel or unit missing", 'Use e.g. --units "S*=um"'))
-    return tuple((name, unit) for texts_of, unit in pairs for name in names([texts_of]))
+        pairs += [(name, unit) for name in names([listed])]
+    return tuple(pairs)
 
 
 def _arrays(texts: Sequence[str] | None, findings: list[Finding]) -> options.Arrays:

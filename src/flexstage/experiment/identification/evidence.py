@@ -107,16 +107,16 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
 
 
 def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
-    first = known.frequencies[1] * _LOWEST_LINES
-    band = (float(first), float(_HIGHEST * records[0].rate))
+    rate, source = records[0].rate, records[0].where
+    band = (float(known.frequencies[1] * _LOWEST_LINES), float(_HIGHEST * rate))
     inside = known.band(*band)
     responses = h1(known)
     is_single = known.averages <= len(known.inputs)
     drive = np.real(np.trace(known.xx, axis1=1, axis2=2))
     noise = _single_noise(known, responses) if is_single else noise_density(known)
     names = names_of(known.inputs)
-    size = _scale(inside.yy, records[0].rate)
-    input_scale, output_scale = _divisor(_scale(inside.xx, records[0].rate)), _divisor(size)
+    size = _scale(inside.yy, rate)
+    input_scale, output_scale = _divisor(_scale(inside.xx, rate)), _divisor(size)
 
     def lines(number: int = 0, parts: int = 1) -> Iterable[Lines]:
         column = len(names)
@@ -131,7 +131,6 @@ def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
 
     weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
     weights = weights * np.sqrt(drive / np.max(drive))[:, None] if is_single else weights
-    source = records[0].where
     return Evidence(
         where=source,
         responses=replace(responses, source=source),
@@ -139,8 +138,8 @@ def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
         lines=lines,
         input_scale=input_scale,
         output_scale=output_scale,
-        density=noise * records[0].rate / 2.0,
-        rate=records[0].rate,
+        density=noise * rate / 2.0,
+        rate=rate,
         band=band,
         coherence=multiple_coherence(known),
         averages=known.independent,

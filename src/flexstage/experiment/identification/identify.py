@@ -15,7 +15,7 @@ from flexstage.experiment.identification.cluster import Candidate, Stabilisation
 from flexstage.experiment.identification.diagnosis.adequacy import Reach, few_lines
 from flexstage.experiment.identification.diagnosis.data_warnings import data_warnings
 from flexstage.experiment.identification.diagnosis.driven import Drive, measure_drives
-from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
+from flexstage.experiment.identification.diagnosis.lateness import bends_modes, common_delay, late_channels, take_out_delay
 from flexstage.experiment.identification.diagnosis.peaks import peaks
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
@@ -100,7 +100,7 @@ def _without_delay(known: Evidence, search: Search, found: Identified) -> Identi
     total = 0.0
     for _ in range(_PASSES):
         later = common_delay(found)
-        if later is None or not bends_modes(found, Delay(later.value if not total else np.inf, 0.0)):
+        if later is None or not bends_modes(found, np.inf if total else later.value):
             return found
         total += later.value
         again = _identify_once(take_out_delay(known, total), search)
@@ -180,10 +180,10 @@ def _fit_groups(
 
 def _widen_doubted(known: Evidence, candidates: tuple[Candidate, ...], fitted: list[BandModes]) -> list[BandModes]:
     """Bands with the scatter between parts of the record in the deviations of modes with a residual above noise."""
-    found = list(fitted)
+    found, every = list(fitted), [_parts(known, each) for each in fitted]
     poles = np.array([candidate.pole for candidate in candidates])
-    for parts in sorted({_parts(known, each) for each in found} - {1}):
-        chosen = [index for index, each in enumerate(found) if _parts(known, each) == parts]
+    for parts in sorted({*every} - {1}):
+        chosen = [index for index, each in enumerate(every) if each == parts]
         bounds = [edges(poles, found[index].group.low, found[index].group.high) for index in chosen]
         for index, cells in zip(chosen, gather_cells(known.lines(1, parts), bounds), strict=True):
             found[index] = widen_by_parts(known, cells, candidates, found[index])

@@ -117,10 +117,10 @@ def _fit_delay(found: Identified, channel: tuple[int, int] | None, near: float =
     return Delay(value, deviation) if real >= _LEAST_REAL and value > least * deviation else None
 
 
-def bends_modes(found: Identified, delay: Delay) -> bool:
-    """Return whether a delay rotates the phase within a mode's band enough (0.05 rad) to impair the fit."""
+def bends_modes(found: Identified, seconds: float) -> bool:
+    """Return whether a delay of `seconds` rotates the phase within a mode's band enough (0.05 rad) to impair the fit."""
     widths = found.frequencies * found.damping
-    return bool(2.0 * np.pi * delay.value * _BESIDE * float(np.max(widths)) > _TURNED)
+    return bool(2.0 * np.pi * seconds * _BESIDE * float(np.max(widths)) > _TURNED)
 
 
 def take_out_delay(known: Evidence, seconds: float) -> Evidence:

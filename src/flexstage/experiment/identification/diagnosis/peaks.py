@@ -197,8 +197,9 @@ def narrow_peaks(responses: Responses, lines: Array, rest: Array, poles: Array) 
 def _prominence(rest: Array) -> Array:
     """Squared distance of every line (f, p, m) from the cubic through its neighbours, over its variance; zero at the ends."""
     offsets = np.r_[-_REACH:-1, 2 : _REACH + 1]
-    basis, _ = np.linalg.qr(np.vander(offsets / _REACH, 4, increasing=True))
-    at_nought = np.linalg.lstsq(np.vander(offsets / _REACH, 4, increasing=True), basis, rcond=None)[0][0]
+    powers = np.vander(offsets / _REACH, 4, increasing=True)
+    basis, _ = np.linalg.qr(powers)
+    at_nought = np.linalg.lstsq(powers, basis, rcond=None)[0][0]
     count = len(rest) - 2 * _REACH
     power, parts = np.zeros((count, *rest.shape[1:])), np.zeros((4, count, *rest.shape[1:]), dtype=complex)
     for place, offset in enumerate(offsets):

@@ -44,23 +44,18 @@ def suggest_mode(band: Band, modal: Modal, cell: int) -> Modal:
     >>> len(suggest_mode(band, start, 0).poles)
     2
     """
-    for chosen, inside in explained_share(band, modal):
-        if cell not in chosen:
-            continue
-        own, rest = _residual_sums(band, chosen, inside)
-        place = int(np.flatnonzero(chosen == cell)[0])
-        columns = list(band.cells.columns[band.cells.block[cell]])
-        size = len(columns)
-        local = _solve(own, rest)[place, :size] / np.sqrt(band.variance[:, cell])
-        row = np.linalg.svd(local)[0][:, 0]
-        participation = np.zeros((len(modal.poles) + 1, band.cells.width), dtype=complex)
-        participation[:-1] = modal.participation
-        participation[-1, columns] = row
-        middle = band.cells.middle[cell]
-        widths = -np.real(modal.poles) / np.abs(modal.poles)
-        width = float(np.median(widths)) * middle if len(widths) else band.cells.high[cell] - band.cells.low[cell]
-        return with_shapes(band, np.append(modal.poles, -_WIDTHS * width + 1j * middle), participation)
-    return modal
+    chosen, inside = next(each for each in explained_share(band, modal) if cell in each[0])
+    own, rest = _residual_sums(band, chosen, inside)
+    place = int(np.flatnonzero(chosen == cell)[0])
+    columns = list(band.cells.columns[band.cells.block[cell]])
+    local = _solve(own, rest)[place, : len(columns)] / np.sqrt(band.variance[:, cell])
+    participation = np.zeros((len(modal.poles) + 1, band.cells.width), dtype=complex)
+    participation[:-1] = modal.participation
+    participation[-1, columns] = np.linalg.svd(local)[0][:, 0]
+    middle = band.cells.middle[cell]
+    widths = -np.real(modal.poles) / np.abs(modal.poles)
+    width = float(np.median(widths)) * middle if len(widths) else band.cells.high[cell] - band.cells.low[cell]
+    return with_shapes(band, np.append(modal.poles, -_WIDTHS * width + 1j * middle), participation)
 
 
 def _residual_sums(band: Band, chosen: Array, inside: Array) -> tuple[Array, Array]:

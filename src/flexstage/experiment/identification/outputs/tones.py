@@ -111,10 +111,7 @@ def _tones_of_block(record: Record, inputs: tuple[int, ...], outputs: tuple[int,
         block = quiet_samples(record.samples, steady_tones(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]
         lines = np.fft.rfft(block - np.mean(block, axis=0), axis=0) / np.sqrt(stop - start)
         fading = [other.frequency for other in found if other.fades]
-        seen = (
-            Tone(each.frequency * line, each.amplitudes / np.sqrt(stop - start), start, stop, each.chance, each.fades)
-            for each in _block_tones(lines, len(inputs))
-        )
+        seen = _block_tones(lines, len(inputs), line, start, stop)
         more = [each for each in seen if all(abs(each.frequency - other) > _TAPERS * line for other in fading)]
         found += more
         if not steady_tones(more):
@@ -122,8 +119,8 @@ def _tones_of_block(record: Record, inputs: tuple[int, ...], outputs: tuple[int,
     return found
 
 
-def _block_tones(lines: Array, inputs: int) -> Iterator[Tone]:
-    """Tones in outputs but not in inputs, with frequencies in lines."""
+def _block_tones(lines: Array, inputs: int, spacing: float, start: int, stop: int) -> Iterator[Tone]:
+    """Tones in outputs but not in inputs, from lines with a `spacing` in Hz."""
     for line in _prominent_lines(_unexplained_power(lines, inputs)):
         half = min(_HALF, line, len(lines) - 1 - line)
         if half < _LEAST:
@@ -141,7 +138,7 @@ def _block_tones(lines: Array, inputs: int) -> Iterator[Tone]:
             offset, amplitudes = _fit_beside_drive(near[:, :inputs], rest[:, seen], offset)
             every = np.zeros(len(seen), dtype=complex)
             every[seen] = amplitudes
-            yield Tone(line + offset, every, 0, 0, float(np.min(chance)), fades)
+            yield Tone((line + offset) * spacing, every / np.sqrt(stop - start), start, stop, float(np.min(chance)), fades)
 
 
 def _is_in_inputs(power: Array) -> bool:
