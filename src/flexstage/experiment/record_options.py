@@ -126,7 +126,7 @@ class RecordTexts:
             inputs=names(self.inputs),
             outputs=names(self.outputs),
             only=names(self.channels),
-            rate=None if self.rate is None else _hertz("--rate", self.rate),
+            rate=_hertz("--rate", self.rate),
             units=units,
             kind=kind,
             arrays=arrays,
@@ -140,22 +140,22 @@ class RecordTexts:
 
     def search(self) -> Search:
         """Return the search parameters of the identification."""
-        band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
-        if self.band is not None and band is not None and band[0] >= band[1]:
+        low, high = (_hertz("--band", text) for text in self.band or (None, None))
+        band = None if low is None or high is None else (low, high)
+        if self.band and band and band[0] >= band[1]:
             raise refuse("--band", f"invalid band (got {self.band[0]} to {self.band[1]})", "Use a low frequency, then a higher frequency")
         lines = self._resolution()
-        moved = self.excitation or Excitation.RECORDED
-        return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
+        return Search(band=band, segments=Segments(1.0 / lines) if lines else None, excitation=self.excitation or Excitation.RECORDED)
 
     def requirements(self, model: LinearModel | None, highest: float | None = None) -> RecordRequirements:
         """Return the requirements on a record: the model's outputs, the resolution, and the band's upper end (default: `highest` [Hz])."""
-        top = _hertz("--band", self.band[1]) if self.band is not None else highest
+        top = _hertz("--band", self.band[1]) if self.band else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
         unrecorded = self.excitation not in (None, Excitation.RECORDED)
         return RecordRequirements(resolution=self._resolution(), highest=top, outputs=outputs, unrecorded=unrecorded)
 
     def _resolution(self) -> float | None:
-        return None if self.frequency_resolution is None else _hertz("--frequency-resolution", self.frequency_resolution)
+        return _hertz("--frequency-resolution", self.frequency_resolution)
 
 
 def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record | Responses]:
@@ -226,7 +226,9 @@ def _word(option: str, word: str, kind: type[_Word], findings: list[Finding]) ->
     return known.get(word)
 
 
-def _hertz(option: str, text: str) -> float:
+def _hertz(option: str, text: str | None) -> float | None:
+    if text is None:
+        return None
     value = parse(text, FREQUENCY, where=option)
     if value < 0.0 or (value == 0.0 and option != "--band"):
         raise refuse(option, f"not a frequency above zero (got {text})", 'Use e.g. "2 kHz"')

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from enum import Enum
 
@@ -120,8 +120,7 @@ def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[C
     ['output', 'input']
     """
     known = tuple(channels)
-    names = names_of(known)
-    require([*_unknown_names(names, options, where), *_named_twice(names, options, where)])
+    require(_name_findings(names_of(known), options, where))
     return tuple(replace(channel, role=_role(channel, options), unit=_unit(channel, options)) for channel in known)
 
 
@@ -158,22 +157,15 @@ def number_names(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(result)
 
 
-def _unknown_names(names: list[str], options: Options, where: str) -> list[Finding]:
-    asked = {
-        "inputs": options.inputs,
-        "outputs": options.outputs,
-        "channels": options.only,
-        "units": tuple(name for name, _ in options.units),
-    }
-    missing = [
-        (kind, pattern) for kind, patterns in asked.items() for pattern in patterns if not any(matches(name, [pattern]) for name in names)
-    ]
-    return [Finding(f"{where}: {kind} {pattern}", "unknown channel", suggest_nearest(pattern, names)) for kind, pattern in missing]
-
-
-def _named_twice(names: list[str], options: Options, where: str) -> list[Finding]:
-    twice = [name for name in names if matches(name, options.inputs) and matches(name, options.outputs)]
-    return [Finding(f"{where}: {name}", "it is named as an input and as an output", "Assign one role to it") for name in twice]
+def _name_findings(names: Sequence[str], options: Options, where: str) -> Iterator[Finding]:
+    units = [name for name, _ in options.units]
+    for kind, patterns in (("inputs", options.inputs), ("outputs", options.outputs), ("channels", options.only), ("units", units)):
+        for pattern in patterns:
+            if not any(matches(name, [pattern]) for name in names):
+                yield Finding(f"{where}: {kind} {pattern}", "unknown channel", suggest_nearest(pattern, names))
+    for name in names:
+        if matches(name, options.inputs) and matches(name, options.outputs):
+            yield Finding(f"{where}: {name}", "it is named as an input and as an output", "Assign one role to it")
 
 
 def _role(channel: Channel, options: Options) -> Role:

@@ -94,21 +94,21 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
     >>> plan.rate, (1e6 * plan.rms).round(6).tolist(), (1e9 * plan.steps[:2]).round(6).tolist()
     (2048.0, [1.5, 1.5, 1.5, 2.0, 2.0, 2.0], [10.0, 10.0])
     """
-    names = setup.drive.actuators if setup.drive.actuators is not None else drivable_actuators(mechanism, model)
+    names = setup.drive.actuators or drivable_actuators(mechanism, model)
     inputs = driven_inputs(mechanism, names)
     gauges = {name: placed.gauge for name, placed in expand(mechanism).gauges.items() if not placed.members}
     metres = np.array([gauge.quantity.si == "m" for gauge in gauges.values()])
     highest = platform_modes(mechanism, model).highest
-    rate = setup.rate if setup.rate is not None else 2.0 ** np.ceil(np.log2(_RATE_OVER_HIGHEST * highest))
+    rate = float(setup.rate or 2.0 ** np.ceil(np.log2(_RATE_OVER_HIGHEST * highest)))
     cutoffs = setup.amplifier.cutoff(np.array([each.capacitance for each in inputs]))
     return Plan(
         setup=setup,
         actuators=tuple(names),
         gauges=tuple(gauges),
         units=tuple(gauge.quantity.si for gauge in gauges.values()),
-        rate=float(rate),
-        band=setup.drive.band if setup.drive.band is not None else (0.0, _BAND_SHARE * float(rate)),
-        corner=setup.filter.corner if setup.filter.corner is not None else _BAND_SHARE * float(rate),
+        rate=rate,
+        band=setup.drive.band or (0.0, _BAND_SHARE * rate),
+        corner=setup.filter.corner or _BAND_SHARE * rate,
         highest=highest,
         inputs=inputs,
         rms=np.array([_commanded_rms(setup, each) for each in inputs]),

@@ -67,16 +67,11 @@ def _write_record(stream: IO[str], record: Record) -> None:
 def _write_responses(stream: IO[str], responses: Responses) -> None:
     stream.write(_comment(describe(responses)))
     parts = [np.real(responses.values), np.imag(responses.values), *([] if responses.coherence is None else [responses.coherence])]
-    endings = ("re", "im", "coherence")[: len(parts)]
-    pairs = [
-        (output, input_, unit)
-        for output, units in zip(responses.outputs, responses.units, strict=True)
-        for input_, unit in zip(responses.inputs, units, strict=True)
-    ]
     headings = [
         _heading(f"{output.name}/{input_.name} {ending}", unit if ending != "coherence" else "1")
-        for output, input_, unit in pairs
-        for ending in endings
+        for output, units in zip(responses.outputs, responses.units, strict=True)
+        for input_, unit in zip(responses.inputs, units, strict=True)
+        for ending in ("re", "im", "coherence")[: len(parts)]
     ]
     stream.write(_row(["frequency [Hz]", *headings]))
     _write_numbers(stream, np.column_stack([responses.frequencies, np.stack(parts, axis=-1).reshape(len(responses.frequencies), -1)]))
