@@ -67,7 +67,7 @@ class SuspectedFault:
         )
 
 
-def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> SuspectedFault | None:
+def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array]) -> SuspectedFault | None:
     """Find the correction of `outputs` that makes the measured `shapes` (p, k) similar to the model's shapes; `None` if there is none.
 
     A correction exchanges two outputs, inverts one or two, or divides all by the values (p,) of `scales()`. If no single correction
@@ -78,7 +78,7 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: C
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
     >>> alike = lambda shapes: float(np.mean(np.sum(theory * shapes, axis=0) ** 2))
-    >>> shape_doubt(("S1", "S2", "S3"), theory * [[1.0], [1.0], [-1.0]], alike).text
+    >>> shape_doubt(("S1", "S2", "S3"), theory * [[1.0], [1.0], [-1.0]], alike, lambda: np.ones(3)).text
     'S3 looks inverted: with its sign changed, the similarity of measured shapes and theory is 1.00 (0.70 as recorded)'
     """
     count = len(outputs)
@@ -87,7 +87,7 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: C
     before = score(shapes)
     if before > 1.0 - _LEAST:
         return None  # no improvement possible
-    tried = list(_remedies(outputs, None if scales is None else scales()))
+    tried = list(_remedies(outputs, scales()))
     single, alone = _best(tried, shapes, score)
     chosen, best = single, alone
     if alone < _COMPLETE and count <= _MOST_TOGETHER:
@@ -125,7 +125,7 @@ def unit_length(shapes: Array) -> Array:
     return shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300)
 
 
-def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[SuspectedFault]:
+def _remedies(outputs: tuple[str, ...], scales: Array) -> Iterator[SuspectedFault]:
     """Corrections: one or two outputs inverted, two exchanged, all scaled."""
     as_is, one = np.arange(len(outputs)), np.ones(len(outputs))
     pairs = list(combinations(range(len(outputs)), 2))
@@ -137,8 +137,8 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Suspec
         order = as_is.copy()
         order[[first, second]] = second, first
         yield SuspectedFault(f"{outputs[first]} and {outputs[second]} look exchanged", "after exchanging them", order, one)
-    wrong = [] if scales is None else [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
-    if wrong and scales is not None:
+    wrong = [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
+    if wrong:
         listed = ", ".join(f"{outputs[index]} ({scales[index]:.3g} times)" for index in wrong)
         look = "looks" if len(wrong) == 1 else "look"
         yield SuspectedFault(f"{listed} {look} scaled relative to the other outputs", "after rescaling", as_is, 1.0 / scales)

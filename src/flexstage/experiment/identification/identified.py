@@ -159,7 +159,7 @@ class Identified(InNotebook):
         """Real parts of the shapes (p, k), each rotated in phase to be as real as possible, for comparison with an undamped model."""
         turn = np.exp(-0.5j * np.angle(np.sum(self.shapes**2, axis=0)))
         turned = np.real(self.shapes * turn)
-        largest = np.take_along_axis(turned, np.argmax(np.abs(turned), axis=0)[None, :], axis=0) if turned.size else turned[:1]
+        largest = np.take_along_axis(turned, np.argmax(np.abs(turned), axis=0)[None, :], axis=0)
         return turned / np.where(largest == 0.0, 1.0, largest)
 
     @property

@@ -288,5 +288,6 @@ def _extremes(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
 
 def _means(x: Array, y: Array, band: tuple[float, float]) -> tuple[Array, Array]:
     """Curve within a band, averaged over bins."""
-    parts = np.array_split(np.flatnonzero(in_band(x, band)), min(np.sum(in_band(x, band)), 2 * _BINS))
+    inside = np.flatnonzero(in_band(x, band))
+    parts = np.array_split(inside, min(len(inside), 2 * _BINS))
     return np.array([np.mean(x[part]) for part in parts]), np.array([np.mean(y[part]) for part in parts])

@@ -10,7 +10,7 @@ from flexstage.experiment.records.record import Channel, Record, Role
 from flexstage.experiment.virtual_rig.chain import chain
 from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
 from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantity
-from flexstage.experiment.virtual_rig.plan import Plan, plan_test
+from flexstage.experiment.virtual_rig.plan import plan_test
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.mechanism import Damping, Mechanism
@@ -76,9 +76,7 @@ def as_record(test: Simulated) -> Record:
     >>> as_record(simulate_test(stage, mapped(stage), RigSetup(seconds=1.0))).name.partition("; ")[0]
     'rig: seed 0'
     """
-    return Record(_channels(test.plan), test.plan.rate, test, name=f"rig: {test.source}", source="virtual test rig")
-
-
-def _channels(plan: Plan) -> tuple[Channel, ...]:
+    plan = test.plan
     inputs = (Channel(name, RECORDED_UNITS[each], Role.INPUT) for name, each in zip(plan.actuators, plan.recorded, strict=True))
-    return (*inputs, *(Channel(name, f"u{read}", Role.OUTPUT) for name, read in zip(plan.gauges, plan.units, strict=True)))
+    outputs = (Channel(name, f"u{read}", Role.OUTPUT) for name, read in zip(plan.gauges, plan.units, strict=True))
+    return Record((*inputs, *outputs), plan.rate, test, name=f"rig: {test.source}", source="virtual test rig")

@@ -53,7 +53,7 @@ class Simulated:
         """
         start, stop, _ = slice(start, stop).indices(self.length)
         size = self.block
-        numbers = range(start // size, -(-stop // size)) if stop > start else range(0)
+        numbers = range(start // size, -(-stop // size))
         pieces = [self._block_at(number)[max(0, start - number * size) : stop - number * size] for number in numbers]
         return np.concatenate(pieces) if pieces else np.zeros((0, len(self.plan.actuators) + len(self.plan.gauges)))
 
