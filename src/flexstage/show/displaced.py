@@ -63,7 +63,7 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
     """Tabulate results along a path: one row for each point, one column for each quantity in its own display unit."""
     kept = quiet(along.values)
     quantities = list(quantities_of(replace(along, values=kept)))
-    heads = [Column(name, "" if form.unit == "1" else form.unit) for name, _, form in quantities]
+    heads = [Column(name, form.text) for name, _, form in quantities]
     rows = zip(*(number_cells(values, form) for _, values, form in quantities), strict=True)
     noise = [NOISE_RULE] if np.any((kept == 0.0) & (along.values != 0.0)) else []
     return make_table(title, heads, rows, notes=[*notes, *noise])

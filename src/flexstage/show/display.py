@@ -27,6 +27,19 @@ class DisplayUnit:
     unit: str
     factor: float
 
+    @property
+    def text(self) -> str:
+        """The unit, or an empty string for pure numbers."""
+        return "" if self.unit == "1" else self.unit
+
+    def format(self, value: float, digits: int = DIGITS) -> str:
+        """Format an SI value with this unit.
+
+        >>> DisplayUnit("um", 1e6).format(2e-6)
+        '2 um'
+        """
+        return f"{number(value * self.factor, digits)} {self.text}".rstrip()
+
 
 # Display units of each SI unit, the preferred one first.
 UNITS: dict[str, str] = {
@@ -147,8 +160,8 @@ def number(value: float, digits: int = DIGITS) -> str:
     return text
 
 
-def align_numbers(values: Iterable[float], digits: int = DIGITS) -> list[str]:
-    """Format the numbers of a column with equal decimals: `digits` significant digits for the largest number.
+def align_numbers(values: Iterable[float]) -> list[str]:
+    """Format the numbers of a column with equal decimals: five significant digits for the largest number.
 
     One more decimal is used if the smallest number needs it. In a column that spans more than four decades, all numbers have the same
     number of significant digits instead.
@@ -159,8 +172,8 @@ def align_numbers(values: Iterable[float], digits: int = DIGITS) -> list[str]:
     items = [float(value) for value in values]
     sizes = [abs(value) for value in items if math.isfinite(value) and value != 0.0]
     if not sizes or max(sizes) / min(sizes) > 1e4 or not 1e-4 <= max(sizes) < 1e6:
-        return [number(value, digits) for value in items]
-    significant = digits + (1 if max(sizes) / min(sizes) > 10.0 else 0)
+        return [number(value) for value in items]
+    significant = DIGITS + (1 if max(sizes) / min(sizes) > 10.0 else 0)
     decimals = max(0, significant - 1 - math.floor(math.log10(max(sizes))))
     decimals = min(decimals, max(_decimals(number(value, significant)) for value in items))
     return [f"{value:.{decimals}f}" if math.isfinite(value) and value != 0.0 else number(value) for value in items]
@@ -185,9 +198,7 @@ def format_value(value: float, unit: str, digits: int = DIGITS) -> str:
     >>> format_value(15.45e6, "N/m"), format_value(2e-9, "m"), format_value(0.5, "1")
     ('15.45 N/um', '2 nm', '0.5')
     """
-    form = display_unit_of(unit, abs(value) if math.isfinite(value) else 0.0)
-    text = number(value * form.factor, digits)
-    return text if form.unit == "1" else f"{text} {form.unit}"
+    return display_unit_of(unit, abs(value) if math.isfinite(value) else 0.0).format(value, digits)
 
 
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")

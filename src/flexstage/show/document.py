@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import Any
 
 from flexstage.analysis.assessment.requirements import Verdict
@@ -19,6 +20,7 @@ from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
+from flexstage.show.table import optional
 
 FORMAT = "flexstage result 3"
 _UNLUMPED = "deflection under permanent load needs the lumped model"
@@ -69,7 +71,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
 
 def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
     """Return the results of an analysis, by name of the command; results that the model or the stage does not have are `None`."""
-    damping = None if analysis.linear is None else analysis.linear.damping
+    respond = partial(response_body, damping=None if analysis.linear is None else analysis.linear.damping)
     results = {
         "mapping": analysis.kinematics,
         "stiffness": None
@@ -77,8 +79,8 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         else stiffness_body(analysis.statics, analysis.deflection, freedoms=analysis.freedoms, mass=analysis.mass),
         "lost-motion": analysis.lost_motion,
         "modes": analysis.modes,
-        "response": None if analysis.response is None else response_body(analysis.response, damping),
-        "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
+        "response": optional(respond, analysis.response),
+        "transmissibility": optional(respond, analysis.transmissibility),
         "workspace": analysis.workspace,
         "force_workspace": analysis.force_workspace,
         "drive_force": analysis.drive_force,
@@ -105,7 +107,7 @@ def analysis_body(analysis: Analysis) -> Document:
     """
     reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items() if name != "deflection"}  # see stiffness
     results = {"loaded": analysis.loaded, "second_order": analysis.second_order, **analysis_results(analysis)}
-    documents = {name: None if found is None else plain(found) for name, found in results.items()}
+    documents = {name: optional(plain, found) for name, found in results.items()}
     body = {"requirements": requirements_body(analysis.verdicts), **documents}
     return body | ({"reasons": reasons} if reasons else {})
 

@@ -144,8 +144,8 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
     >>> fold("Empty", None) is None
     True
     """
-    kept = tuple(block for block in blocks if block is not None)
-    return Folded(title, kept) if kept else None
+    found = section(title, blocks)
+    return found and Folded(title, found.blocks)
 
 
 def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:

@@ -25,7 +25,12 @@ _FILLS = {Kind.GROUND: "#56606b", Kind.BODY: "#8d99a6", Kind.DRIVE: "#f2a33c", K
 """Fill colours of the kinds of parts, from the lowest layer to the highest."""
 _OPACITY = 0.55
 _ARROW = {"arrowstyle": "<|-|>", "color": INK, "lw": 0.5, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
-_PLATE = {"boxstyle": "round,pad=0.15", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.85}
+_LABEL = {
+    "ha": "center",
+    "va": "center",
+    "fontsize": 7,
+    "bbox": {"boxstyle": "round,pad=0.15", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.85},
+}
 
 
 @dataclass(frozen=True)
@@ -151,9 +156,7 @@ def _rings(axes: Any, found: tuple[Ring, ...]) -> None:
     for radius in sorted({round(ring.radius, 6) for ring in found}):
         axes.plot(radius * np.cos(circle), radius * np.sin(circle), color=MUTED, linewidth=0.5, linestyle=(0, (8, 3, 1.5, 3)))
         between = np.deg2rad(next(ring.first + 0.5 * ring.step for ring in found if round(ring.radius, 6) == radius))
-        axes.text(
-            radius * np.cos(between), radius * np.sin(between), f"R {number(radius)}", ha="center", va="center", fontsize=7, bbox=_PLATE
-        )
+        axes.text(radius * np.cos(between), radius * np.sin(between), f"R {number(radius)}", **_LABEL)
 
 
 def _ray(axes: Any, angle: float, radius: float) -> None:
@@ -165,7 +168,7 @@ def _ray(axes: Any, angle: float, radius: float) -> None:
     axes.plot(inner * np.cos(arc), inner * np.sin(arc), color=INK, linewidth=0.5)
     middle = 0.5 * turned
     text = f"{number(float(np.rad2deg(turned)))}°".replace("-", "−")
-    axes.text(1.35 * inner * np.cos(middle), 1.35 * inner * np.sin(middle), text, ha="center", va="center", fontsize=7, bbox=_PLATE)
+    axes.text(1.35 * inner * np.cos(middle), 1.35 * inner * np.sin(middle), text, **_LABEL)
 
 
 def _sizes(axes: Any, data: StageData, reach: Array) -> None:
@@ -177,13 +180,10 @@ def _sizes(axes: Any, data: StageData, reach: Array) -> None:
     x, y = -reach - 0.1 * float(reach.max())
     for start, end in (((left, y), (right, y)), ((x, low), (x, high))):
         axes.annotate("", xy=start, xytext=end, arrowprops=_ARROW)
-    for ends in (
-        [[left, left], [low, y - 4.0]],
-        [[right, right], [low, y - 4.0]],
-        [[left, x - 4.0], [low, low]],
-        [[left, x - 4.0], [high, high]],
-    ):
-        axes.plot(*ends, color=INK, linewidth=0.4)
-    style = {"ha": "center", "va": "center", "fontsize": 7.5, "bbox": _PLATE}
+    for side in (left, right):
+        axes.plot([side, side], [low, y - 4.0], color=INK, linewidth=0.4)
+    for level in (low, high):
+        axes.plot([left, x - 4.0], [level, level], color=INK, linewidth=0.4)
+    style = _LABEL | {"fontsize": 7.5}
     axes.text(0.5 * (left + right), y, number(float(right - left)), **style)
     axes.text(x, 0.5 * (low + high), number(float(high - low)), rotation=90, **style)

@@ -73,10 +73,6 @@ def _is_wordy(table: Table) -> bool:
     return any(len(cell.text) > _WORDY for row in table.rows for cell in row[1:])
 
 
-def _beginning(table: Table) -> Table:
-    return first_rows(table, PAGE_ROWS)
-
-
 def _kind(block: object) -> str:
     return type(block).__name__.lower()
 
@@ -95,7 +91,7 @@ _FILTERS: dict[str, Callable[..., Any]] = {
     "kind": _kind,
     "wordy": _is_wordy,
     "named": _has_long_names,
-    "beginning": _beginning,
+    "beginning": functools.partial(first_rows, most=PAGE_ROWS),
 }
 
 _GAP = 3
@@ -162,15 +158,10 @@ def _span(table: Table, index: int, longest: int | None = None) -> _Span:
     texts = [column.head, *(printable(row[index].text, keep="\n") for row in table.rows)]
     unit = cell_len(f"[{column.unit}]") if column.unit else 0
     most = max((cell_len(line) for text in texts for line in text.splitlines()), default=0)
-    words = [word for text in texts for word in _words(text)]
+    words = [word for text in texts for line in text.splitlines() for word in _BREAKS.split(line)]
     if longest is not None:
         words = [piece for word in words for piece in (_INNER_BREAKS.split(word) if cell_len(word) > longest else [word])]
     return _Span(max(*map(cell_len, words), unit), max(most, unit))
-
-
-def _words(text: str) -> list[str]:
-    """Words of a text; a number and its unit are one."""
-    return [word for line in text.splitlines() for word in _BREAKS.split(line)]
 
 
 def _panels(spans: Sequence[_Span], width: int) -> list[dict[int, _Span]]:

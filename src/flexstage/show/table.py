@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -57,6 +57,8 @@ class Column:
         return f"{self.head} [{self.unit}]" if self.unit else self.head
 
 
+_Found = TypeVar("_Found")
+_Made = TypeVar("_Made")
 _MANY = 60
 _PLAIN = Heading()
 _NO_FIELDS: Mapping[str, Field] = {}
@@ -316,6 +318,15 @@ def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provena
     return make_table(title, ["", Column("value"), "unit"], rows, notes=notes, provenance=provenance)
 
 
+def optional(make: Callable[[_Found], _Made], found: _Found | None) -> _Made | None:
+    """Make something of a result, such as its table; `None` for a result that is absent.
+
+    >>> optional(further, None) is None
+    True
+    """
+    return None if found is None else make(found)
+
+
 def result_tables(result: Any) -> Iterator[Table]:
     """Make a table for every part of a result, with the part's path in the document as title. Only the first rows of long tables are shown.
 
@@ -401,7 +412,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
     outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
     cells = [replace(cell, mark=Mark.FAIL) if out else cell for cell, out in zip(cells, outside, strict=True)]
     cells = [replace(cell, text=heading.infinite) if np.isposinf(each) else cell for cell, each in zip(cells, numbers, strict=True)]
-    return Column(heading.text, "" if varying or form.unit in ("%", "1") else form.unit), cells
+    return Column(heading.text, "" if varying or form.unit == "%" else form.text), cells
 
 
 def interval_text(low: float, high: float) -> str:
@@ -480,13 +491,13 @@ def matrix_table(
     if ends is None:
         return column_table(title, replace(matrix, values=kept), notes=[*notes, *said], provenance=provenance)
     rows, columns = (tuple(display_unit_of(unit, 0.0, *units) for unit in own) for own in ends)
-    heads = [Column(name, _unit(form)) for name, form in zip(short_names(matrix.columns), columns, strict=True)]
+    heads = [Column(name, form.text) for name, form in zip(short_names(matrix.columns), columns, strict=True)]
     scales = np.array([column.factor for column in columns])
     lines = [
-        [Cell(Column(name, _unit(form)).text, Mark.STRONG), *(_cell(number(each)) for each in (line * form.factor / scales).tolist())]
+        [Cell(Column(name, form.text).text, Mark.STRONG), *(_cell(number(each)) for each in (line * form.factor / scales).tolist())]
         for name, form, line in zip(short_names(matrix.rows), rows, kept, strict=True)
     ]
-    ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
+    ratio = ["Entries: row unit per column unit."] if all(any(form.text for form in forms) for forms in (rows, columns)) else []
     return make_table(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said], provenance=provenance)
 
 
@@ -522,10 +533,6 @@ def _entry_units(matrix: Matrix) -> tuple[tuple[str, ...], ...]:
     if isinstance(matrix.unit, str):
         return ((matrix.unit,) * len(matrix.columns),) * len(matrix.rows)
     return matrix.unit
-
-
-def _unit(form: DisplayUnit) -> str:
-    return "" if form.unit == "1" else form.unit
 
 
 def _with_unit(value: float, unit: str, digits: int) -> Cell:

@@ -72,7 +72,7 @@ def workspace(
         return CommandResult(
             mechanism,
             lambda: _with_error(reached, small),
-            lambda: [_small_text(small), *force_workspace_tables(reached)],
+            lambda: [small and small.text, *force_workspace_tables(reached)],
             model=model,
         )
     stands = command_stage(mechanism, OperatingPointOptions(), model)
@@ -80,16 +80,12 @@ def workspace(
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
     small = second_order(mechanism, kinematics, found.command)
-    return stands.result(_with_error(stands.body(found), small), lambda: [_small_text(small), *_workspace_tables(found)])
+    return stands.result(_with_error(stands.body(found), small), lambda: [small and small.text, *_workspace_tables(found)])
 
 
 def _with_error(body: Any, small: SecondOrder | None) -> Any:
     """A result with the error of linear kinematics over its motions."""
     return body if small is None else SideBySide((body, {"second_order": small}))
-
-
-def _small_text(small: SecondOrder | None) -> str | None:
-    return None if small is None else small.text
 
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
@@ -177,7 +173,7 @@ def budget(
     noise = spectra(stands.links, input_asd) if input_asd else None
     found = budgeting.budget(mechanism, asked, at=point, temperature=warmth, noise=noise, band=band_limits(band))
     small = second_order(mechanism, ideal(mechanism), asked)
-    return stands.result(_with_error(stands.body(found), small), lambda: [_small_text(small), *error_budget_tables(found)])
+    return stands.result(_with_error(stands.body(found), small), lambda: [small and small.text, *error_budget_tables(found)])
 
 
 def _reached(mechanism: Mechanism) -> dict[str, float]:

@@ -25,7 +25,7 @@ from flexstage.show.command.options import Changes, Csv, Design, ElasticBodies, 
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
-from flexstage.show.table import Table, result_table
+from flexstage.show.table import Table, optional, result_table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, workspace
 from flexstage.show.tables.change import set_table
 from flexstage.show.tables.force_workspace import drive_force_tables, force_workspace_tables
@@ -156,15 +156,15 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     yield from kinematics.kinematics_tables(analysis.kinematics)
     if analysis.statics is not None:
         yield statics.stiffness_table(analysis.statics)
-        yield None if analysis.freedoms is None else statics.freedom_stiffness_table(analysis.freedoms)
+        yield optional(statics.freedom_stiffness_table, analysis.freedoms)
         yield statics.principal_table(analysis.statics)
     yield result_table(analysis.units or {})
     if analysis.lost_motion is not None:
         yield lost_motion.loss_table(analysis.lost_motion)
         yield lost_motion.budget_table(analysis.lost_motion)
     for unit in (analysis.units or {}).values():
-        yield None if unit.omitted is None else omitted_table(unit.omitted)
-    yield None if analysis.modes is None else mode_table(analysis.modes)
+        yield optional(omitted_table, unit.omitted)
+    yield optional(mode_table, analysis.modes)
     if analysis.force_workspace is not None:
         yield from force_workspace_tables(analysis.force_workspace)
     yield from drive_force_tables(analysis.drive_force)
@@ -174,6 +174,6 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
         yield from workspace.strength_tables(analysis.workspace)
     elif analysis.buckling is not None:
         yield from map(result_table, (analysis.buckling.stage, analysis.buckling))
-    yield None if analysis.drift is None else errors.drift_table(analysis.drift)
+    yield optional(errors.drift_table, analysis.drift)
     if analysis.error_budget is not None:
         yield from errors.error_budget_tables(analysis.error_budget)

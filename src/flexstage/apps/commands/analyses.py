@@ -36,7 +36,7 @@ from flexstage.show.command.options import ElasticModelName, InputDensities, Mod
 from flexstage.show.command.output import save
 from flexstage.show.command.values import band_limits, spectra
 from flexstage.show.document import response_body, stiffness_body
-from flexstage.show.table import Table, result_table
+from flexstage.show.table import Table, optional, result_table
 from flexstage.show.tables import kinematics as motion_tables
 from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.force_workspace import drive_force_tables
@@ -131,12 +131,12 @@ def _stiffness_tables(
 ) -> Iterator[Table | None]:
     yield stiffness_table(found)
     yield compliance_table(found)
-    yield None if freedoms is None else freedom_stiffness_table(freedoms)
+    yield optional(freedom_stiffness_table, freedoms)
     yield principal_table(found)
     yield direction_table(found)
     yield centre_table(found)
     yield from mass_tables(mass)
-    yield None if sagging is None else deflection_table(sagging)
+    yield optional(deflection_table, sagging)
 
 
 @command()
@@ -268,4 +268,4 @@ def response(
     limits = (float(grid[0]), float(grid[-1]))
     shaken = random_response(linear, chosen, spectra(linear, input_asd), limits, damping=law) if input_asd else None
     body = there.body(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken})))
-    return there.result(body, lambda: [response_table(found), None if shaken is None else random_table(shaken)])
+    return there.result(body, lambda: [response_table(found), optional(random_table, shaken)])

@@ -194,7 +194,10 @@ def buckle(
     found = buckling_factors(mechanism, cases, temperature=place.warmth, demand=asked_factor(mechanism))
     require(_unanswered(found))
     after = _beyond(found, cases, branch, post_buckling) if post_buckling else None
-    told = _buckling(found, after)
+    first = found.cases[0]
+    link = "" if first.found is None else first.found.link
+    along = None if after is None else after.stroke.along
+    told = Buckling(first.load, first.factor, first.kind, link, shape_of(first), found.cases, along)
     return CommandResult(
         mechanism,
         lambda: told,
@@ -300,9 +303,3 @@ def _axis(rotation: str, translation: str) -> str:
     if axis not in COMPONENTS[:3]:
         raise refuse(option, f'must be x, y or z (got "{axis}")', "Use one of them")
     return axis if translation else f"r{axis}"
-
-
-def _buckling(found: CaseFactors, after: PostBuckling | None) -> Buckling:
-    first, along = found.cases[0], None if after is None else after.stroke.along
-    link = "" if first.found is None else first.found.link
-    return Buckling(first.load, first.factor, first.kind, link, shape_of(first), found.cases, along)

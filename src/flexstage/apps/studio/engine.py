@@ -6,7 +6,6 @@ import time
 import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from importlib import import_module
 from typing import Any
 
@@ -16,33 +15,18 @@ from flexstage.base.processes.jobs import Line
 from flexstage.base.processes.threads import one_thread
 
 _HERE = "flexstage.apps.studio"
-TASKS: Mapping[str, str] = {
-    "read": "design.reading:read",
-    "write": "design.writing:write",
-    "insert": "design.palette:insert",
-    "gallery": "design.palette:gallery",
-    "shipped": "design.palette:shipped",
-    "place": "questions:place",
-    "drag": "dragging:drag",
-    "figures": "results:figures",
-    "verdicts": "results:verdicts",
-    "errors": "results:errors",
-    "reach": "results:reach",
-    "scene": "results:scene",
-    "still": "results:still",
-    "warnings": "results:warnings",
-    "card": "questions:card",
-    "motion": "questions:motion",
-    "posed": "questions:posed",
-    "slopes": "questions:slopes",
-    "travelled": "travel:travelled",
-    "freedoms": "questions:freedoms",
-    "clearances": "questions:clearances",
-    "solid_modes": "solids:solid_modes",
-    "compared": "results:all_figures",
-    "form": "forms:form",
-    "specify": "forms:specify",
+_MODULES = {
+    "design.reading": "read",
+    "design.writing": "write",
+    "design.palette": "insert gallery shipped",
+    "dragging": "drag",
+    "results": "figures verdicts errors reach scene still warnings all_figures",
+    "questions": "place card motion posed slopes freedoms clearances",
+    "travel": "travelled",
+    "solids": "solid_modes",
+    "forms": "form specify",
 }
+TASKS: Mapping[str, str] = {name: f"{module}:{name}" for module, names in _MODULES.items() for name in names.split()}
 """Tasks by name: module and function, imported at the first call."""
 TELLING = frozenset({"travelled"})
 """Tasks with progress reports: their last argument receives them."""
@@ -52,9 +36,9 @@ TELLING = frozenset({"travelled"})
 class Outcome:
     """Result of a task: its value, or the problems for which it was refused, and the CPU time [s]."""
 
-    value: Any
-    problems: tuple[Problem, ...]
-    seconds: float
+    value: Any = None
+    problems: tuple[Problem, ...] = ()
+    seconds: float = 0.0
 
 
 def problem(finding: Finding) -> Problem:
@@ -71,17 +55,17 @@ def failure(task: str, error: Exception) -> Problem:
 @one_thread
 def work(line: Line, task: str, *arguments: Any) -> Outcome:
     """Run a task and report any error."""
-    start = time.process_time()
+    start, value, problems = time.process_time(), None, ()
     try:
         own = (line.tell,) if task in TELLING else ()
-        value, problems = _function(task)(*arguments, *own), ()
+        value = _function(task)(*arguments, *own)
     except DesignError as error:
-        value, problems = None, _located(error, arguments)
+        problems = _located(error, arguments)
     except MemoryError:
-        value, problems = None, (Problem(task, "not enough memory", "Close other programs, or make the design smaller"),)
+        problems = (Problem(task, "not enough memory", "Close other programs, or make the design smaller"),)
     except Exception as error:  # noqa: BLE001 (a failed task must not stop the others)
         traceback.print_exc()
-        value, problems = None, (failure(task, error),)
+        problems = (failure(task, error),)
     seconds = time.process_time() - start
     if value is not None and hasattr(value, "milliseconds"):
         value = replace(value, milliseconds=1e3 * seconds)
@@ -95,7 +79,6 @@ def _located(error: DesignError, arguments: tuple[Any, ...]) -> tuple[Problem, .
     return problems_of(error.findings, str(arguments[0]), str(arguments[1])) if len(arguments) > 1 else tuple(map(problem, error.findings))
 
 
-@lru_cache
 def _function(task: str) -> Any:
     module, _, name = TASKS[task].partition(":")
     return getattr(import_module(f"{_HERE}.{module}"), name)

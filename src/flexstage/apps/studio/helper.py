@@ -9,9 +9,8 @@ import queue
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 from flexstage.apps.studio.engine import Outcome, problem, work
 from flexstage.apps.studio.protocol import Problem
@@ -31,14 +30,15 @@ class Urgency(IntEnum):
     """Tasks without urgency."""
 
 
-@dataclass(order=True)
-class _Task:
+class _Task(NamedTuple):
+    """A task, sorted by its urgency, then by its unique number."""
+
     urgency: Urgency
     number: int
-    call: tuple[Any, ...] = field(compare=False)
-    answer: asyncio.Future[Outcome | None] = field(compare=False)
-    wanted: Callable[[], bool] = field(compare=False)
-    heard: Callable[[Any], None] = field(compare=False)
+    call: tuple[Any, ...]
+    answer: asyncio.Future[Outcome | None]
+    wanted: Callable[[], bool]
+    heard: Callable[[Any], None]
 
 
 def always() -> bool:
@@ -133,9 +133,9 @@ class Helper:
                 return None
             if not is_new:
                 return await self._do(task)
-            return Outcome(None, (Problem(str(task.call[0]), f"the computing process ended: {error}", _AGAIN),), 0.0)
+            return _failed(task, f"the computing process ended: {error}")
         except OSError as error:
-            return Outcome(None, (Problem(str(task.call[0]), f"the system cannot start a computing process: {error}", _AGAIN),), 0.0)
+            return _failed(task, f"the system cannot start a computing process: {error}")
         finally:
             self._now, self._given_up = None, False
 
@@ -168,7 +168,11 @@ class Helper:
         elif word is Word.TOLD and self._now is not None and worker is self._worker:
             self._now[0].heard(value)
         elif waits is not None and not waits.done():
-            waits.set_result(value if word is Word.DONE else Outcome(None, tuple(map(problem, getattr(value, "findings", ()))), 0.0))
+            waits.set_result(value if word is Word.DONE else Outcome(problems=tuple(map(problem, getattr(value, "findings", ())))))
+
+
+def _failed(task: _Task, what: str) -> Outcome:
+    return Outcome(problems=(Problem(str(task.call[0]), what, _AGAIN),))
 
 
 def _pass_on(heard: Heard, loop: asyncio.AbstractEventLoop, hear: Callable[[Worker, Word, Any], None]) -> None:

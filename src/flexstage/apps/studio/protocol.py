@@ -587,8 +587,8 @@ class Engine(Said):
     """State of the computing process, its task `text`, and the expected duration [s]. If `ended`, the process crashed and was restarted."""
 
     state: Literal["starts", "ready", "computes", "ended"]
-    text: str
-    seconds: float | None
+    text: str = ""
+    seconds: float | None = None
 
 
 class Scene(DesignMessage):

@@ -33,7 +33,7 @@ from flexstage.apps.studio.protocol import (
     Slope,
     Slopes,
 )
-from flexstage.apps.studio.results import bench, judged, largest, matrix, strain_shares
+from flexstage.apps.studio.results import bench, judged, largest, matrix
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import NOISE, ratio_units
 from flexstage.base.labelled import Matrix as Labelled
@@ -44,12 +44,12 @@ from flexstage.beams.stress import stress
 from flexstage.mechanism.addresses.address import addresses, get
 from flexstage.mechanism.assembly.expand import PlacedLink, PlacedSuperelement, expand, unit_of_copy
 from flexstage.mechanism.geometry.contact import gaps
-from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.ideal import free_freedoms
 from flexstage.models.linear.static import input_motion, static_gain
 from flexstage.parts.part import Elastic, inner
 from flexstage.show.display import format_value, to_typography
+from flexstage.show.viewer.motions import strain_shares
 from flexstage.show.viewer.parts import body_address, link_address, part_facts
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
@@ -61,6 +61,8 @@ _PLATFORM = tuple(f"platform.{name}" for name in COMPONENTS)
 
 def card(text: str, file: str, name: str) -> Card:
     """Return the card of a link."""
+    from flexstage.apps.studio.solids import hinge_facts  # takes long to import
+
     known = bench(text, file)
     links: Mapping[str, PlacedLink | PlacedSuperelement] = {**known.assembly.links, **known.assembly.superelements}
     if name not in links:
@@ -74,7 +76,7 @@ def card(text: str, file: str, name: str) -> Card:
     shares = attempt.of("shares", lambda: _shares(known, name)) or {}
     drawn, part = link_address(known.mechanism, link), f"parts.{link.link.part}"
     where = [line for line in (line_of(drawn, lines), line_of(part, lines)) if line]
-    verified = () if own is None else _verified(known.mechanism, own)
+    verified = () if own is None else hinge_facts(known.mechanism, own)
     told = (each for each in part_warnings(known.mechanism) if each.where.partition(".")[0] in (name, link.drawn, part, link.link.part))
     return Card(
         name,
@@ -93,12 +95,6 @@ def card(text: str, file: str, name: str) -> Card:
         problems_of(told, text, file),
         attempt.missing | ({} if verified else {"verified": "no stored results of finite elements: verify the design"}),
     )
-
-
-def _verified(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
-    from flexstage.apps.studio.solids import hinge_facts  # takes long to import
-
-    return hinge_facts(mechanism, link)
 
 
 def place(text: str, file: str, line: int) -> Place:

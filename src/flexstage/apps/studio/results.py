@@ -38,7 +38,6 @@ from flexstage.apps.studio.protocol import (
     Loss,
     Matrix,
     ModeShape,
-    Problem,
     Reach,
     Stroke,
     Verdicts,
@@ -48,14 +47,13 @@ from flexstage.apps.studio.wire import floats
 from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.labelled import quiet
-from flexstage.base.number import Array
 from flexstage.base.session import SESSION
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.linear.static import part_deformation
 from flexstage.show.display import display_unit_of, field_unit, preferred_unit
+from flexstage.show.viewer.motions import strain_shares
 
 if TYPE_CHECKING:
     from flexstage.show.viewer.data import StageData
@@ -90,7 +88,12 @@ def figures(text: str, file: str, stored: str, choice: Choice) -> Figures:
         tuple(_with_old(_key_figures(found, stiff, lost), "figures", stored, text, file)),
         None if stiff is None else matrix(stiff.stiffness),
         None if stiff is None else matrix(stiff.compliance),
-        () if lost is None else tuple(_losses(lost)),
+        ()
+        if lost is None
+        else tuple(
+            Loss(name, float(each.gain), float(each.loss), {link: float(share) for link, share in each.budget_by_link.items()})
+            for name, each in lost.actuators.items()
+        ),
         () if found is None else tuple(_modes(known.under_load.model, found)),
         None if response is None else floats(response.frequencies),
         () if response is None else tuple(_curves(response)),
@@ -120,17 +123,13 @@ def errors(text: str, file: str) -> None:
     require(model_findings(design(text, file)))
 
 
+@SESSION.keep(8)
 def warnings(text: str, file: str) -> Warnings:
     """Return the warnings about a design, and the default values that it uses."""
-    return Warnings(_doubts(text, file))
-
-
-@SESSION.keep(8)
-def _doubts(text: str, file: str) -> tuple[Problem, ...]:
     from flexstage.analysis.caveats import caveats
 
     told = caveats(design(text, file))
-    return problems_of((*told.warnings, *told.defaults), text, file)
+    return Warnings(problems_of((*told.warnings, *told.defaults), text, file))
 
 
 def scene(text: str, file: str) -> Mapping[str, Any]:
@@ -229,16 +228,7 @@ def _curves(response: Response) -> Iterator[Curve]:
     for row, output in enumerate(response.outputs):
         for column, source in enumerate(response.inputs):
             values = floats(size[:, row, column]), floats(phase[:, row, column])
-            yield Curve(_name(source), _name(output), response.units[row][column], *values)
-
-
-def _name(port: Any) -> str:
-    return port if isinstance(port, str) else str(port.name)
-
-
-def _losses(lost: LostMotion) -> Iterator[Loss]:
-    for name, each in lost.actuators.items():
-        yield Loss(name, float(each.gain), float(each.loss), {link: float(share) for link, share in each.budget_by_link.items()})
+            yield Curve(source.name, output.name, response.units[row][column], *values)
 
 
 def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
@@ -258,15 +248,6 @@ def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
         )
 
 
-def strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
-    """Return the fraction (k,) of the strain energy in every link, for k shapes (n, k)."""
-    parts = {
-        name: np.einsum("ik,ij,jk->k", each, model.stiffness[name].law, each) for name, each in part_deformation(model, shapes).items()
-    }
-    total = sum(parts.values(), np.zeros(shapes.shape[1]))
-    return {name: each / np.where(total > 0.0, total, np.inf) for name, each in parts.items()}
-
-
 def largest(shares: Iterable[tuple[str, float]]) -> dict[str, float]:
     """Return the fractions of at least one per cent, the largest first."""
     return dict(sorted(((name, share) for name, share in shares if share >= _SHOWN), key=lambda each: -round(each[1], 6)))
@@ -282,8 +263,7 @@ def _with_old(found: Iterable[KeyFigure], kind: str, stored: str, text: str, fil
     for each in rows:
         stood = old.get(each.name)
         form = display_unit_of(each.unit, abs(stood or each.value or 0.0))
-        shown = "" if form.unit == "1" else form.unit
-        yield Figure(each.name, each.name.partition(".")[0], each.unit, shown, 1.0 / form.factor, each.value, stood)
+        yield Figure(each.name, each.name.partition(".")[0], each.unit, form.text, 1.0 / form.factor, each.value, stood)
 
 
 @SESSION.keep(4)
@@ -323,7 +303,7 @@ def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judg
         requirement.text,
         requirement.point,
         requirement.quantity.si,
-        "" if form.unit == "1" else form.unit,
+        form.text,
         1.0 / form.factor,
         requirement.limit,
         value,

@@ -72,10 +72,8 @@ class Session:
         self.shown: dict[type[say.Said], say.Said] = {}
         """Messages to a new page, by kind."""
         self._tell = tell
-        self._model = Helper(self._died)
-        self._reader: Helper | None = None
-        self._slow: Helper | None = None
-        self._far: Helper | None = None
+        self._helpers = [Helper(self._died) for _ in range(4)]
+        self._model, self._reader, self._slow, self._far = self._helpers
         self._choice: tuple[Any, ...] = ((), (), None, None)
         self._newest: dict[type[Any], Any] = {}
         """The last request of each kind."""
@@ -95,7 +93,7 @@ class Session:
 
     async def open(self) -> None:
         """Read the text and compute its results."""
-        self._push(say.Engine("starts", "The computing process starts", None))
+        self._push(say.Engine("starts", "The computing process starts"))
         await self._read()
 
     async def close(self) -> None:
@@ -115,10 +113,6 @@ class Session:
     def processes(self) -> tuple[int, ...]:
         """Identifiers (PID) of the computing processes."""
         return tuple(each.process for each in self._helpers if each.process is not None)
-
-    @property
-    def _helpers(self) -> tuple[Helper, ...]:
-        return tuple(each for each in (self._model, self._reader, self._slow, self._far) if each is not None)
 
     # --- requests ---
 
@@ -259,7 +253,7 @@ class Session:
     async def answer_compare(self, *_: Any) -> say.Said:
         """Figures of the file, of all pinned designs and of the present one."""
         texts = {"file": self.stored.text, **self.history.pins, "now": self._design}
-        tables = [await self._task_value(self._model, "compared", text, self._file) for text in texts.values()]
+        tables = [await self._task_value(self._model, "all_figures", text, self._file) for text in texts.values()]
         known = {each.name: each for table in tables for each in table}
         by_name = [{each.name: each.value for each in table} for table in tables]
         rows = tuple(_row(each, by_name[-1].get(name), by_name[0].get(name)) for name, each in known.items())
@@ -293,20 +287,17 @@ class Session:
 
     async def answer_derive(self, *_: Any) -> say.Said | None:
         """Run in a separate process, because of its duration; nothing for an outdated text."""
-        self._slow = self._slow or Helper(self._died)
         revision = self._computed
         return await self._task_value(self._slow, "slopes", self._design, self._file, wanted=lambda: self._computed == revision)
 
     async def answer_travel(self, request: say.Travel, _: int, tell: Tell) -> say.Said:
         """Run in a separate process, which ends with an abort, because of its duration; a new path replaces the running one."""
-        self._far = self._far or Helper(self._died)
         self._far.start_anew()
         return await self._task_value(self._far, "travelled", self._design, self._file, request, heard=tell)
 
     async def answer_halt(self, *_: Any) -> None:
         """Abort the load path."""
-        if self._far is not None:
-            self._far.start_anew()
+        self._far.start_anew()
 
     async def answer_palette(self, *_: Any) -> say.Said:
         """List the snippets."""
@@ -384,7 +375,7 @@ class Session:
             self.reading, self.sound, self._computed = outcome.value, text, revision
         self._push_state()
         if self.problems:
-            self._push(say.Engine("ready", "", None))
+            self._push(say.Engine("ready"))
         else:
             self._start(self._compute(revision, text))
 
@@ -393,30 +384,25 @@ class Session:
         if self._model.busy(Urgency.SOON) > _STALE:
             self._model.start_anew()
         async with self._computing:
-            await self._compute_stages(revision, text)
-
-    async def _compute_stages(self, revision: int, text: str) -> None:
-        links = len(self.reading.links) if self.reading else 0
-        for stage, called, assumed in _STAGES:
-            work = self._work_of(stage, text)
-            if work is None or self._last.get(stage) == (work, revision):
-                self._report(stage, () if work is None else self._failures.get(stage, ()))
-                continue
-            left = expected(links, *self._took.get(stage, (assumed, 30)))
-            outcome = await self._announced(called, left, work, lambda: self.sound == text and self._computed == revision)
-            if outcome is None:
-                return
-            self._took[stage] = (outcome.seconds, links)
-            self._report(stage, outcome.problems)
-            if not outcome.problems:
-                self._last[stage] = work, revision
-            if outcome.value is not None:
-                self._push(replace(say.Scene(outcome.value) if stage == "scene" else outcome.value, revision=revision))
-            if stage == "warnings" and outcome.value and outcome.value.warnings != self._warnings:
-                self._warnings = outcome.value.warnings
-                self._push_state()
-            if stage == "figures" and self._reader is None:
-                self._reader = Helper(self._died)  # not earlier, because its start takes processor time
+            links = len(self.reading.links) if self.reading else 0
+            for stage, called, assumed in _STAGES:
+                work = self._work_of(stage, text)
+                if work is None or self._last.get(stage) == (work, revision):
+                    self._report(stage, () if work is None else self._failures.get(stage, ()))
+                    continue
+                left = expected(links, *self._took.get(stage, (assumed, 30)))
+                outcome = await self._announced(called, left, work, lambda: self.sound == text and self._computed == revision)
+                if outcome is None:
+                    return
+                self._took[stage] = (outcome.seconds, links)
+                self._report(stage, outcome.problems)
+                if not outcome.problems:
+                    self._last[stage] = work, revision
+                if outcome.value is not None:
+                    self._push(replace(say.Scene(outcome.value) if stage == "scene" else outcome.value, revision=revision))
+                if stage == "warnings" and outcome.value and outcome.value.warnings != self._warnings:
+                    self._warnings = outcome.value.warnings
+                    self._push_state()
 
     def _report(self, stage: str, problems: tuple[say.Problem, ...]) -> None:
         """Show the errors of a stage of the computation, in place of its earlier ones."""
@@ -459,7 +445,7 @@ class Session:
         outcome = await self._model.ask(*work, urgency=Urgency.SOON, wanted=wanted)
         told = self.shown[say.Engine]
         if left > _QUIET or (isinstance(told, say.Engine) and told.state in {"starts", "ended"}):
-            self._push(say.Engine("ready", "", None))
+            self._push(say.Engine("ready"))
         return outcome
 
     def _push_state(self) -> None:
@@ -496,7 +482,7 @@ class Session:
         self._push_state()
 
     def _died(self, words: str) -> None:
-        self._push(say.Engine("ended", f"The computing process ended and is restarted: {words}", None))
+        self._push(say.Engine("ended", f"The computing process ended and is restarted: {words}"))
 
     # --- requests to the processes ---
 
@@ -511,8 +497,8 @@ class Session:
 
     @property
     def _quick(self) -> Helper:
-        """The process for reading texts and for sliders."""
-        return self._reader or self._model
+        """The process for reading texts and for sliders: the other one until the first figures, because a start takes processor time."""
+        return self._reader if "figures" in self._took else self._model
 
     async def _task_value(
         self, helper: Helper, *call: Any, wanted: Callable[[], bool] | None = None, heard: Callable[[Any], None] = nobody

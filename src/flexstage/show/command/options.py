@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from enum import Enum
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any, TypeAlias, TypeVar
+from typing import Annotated, Any, TypeAlias
 
 import typer
 
@@ -17,7 +17,6 @@ from flexstage.show.command.failure import BAD_INPUT
 from flexstage.show.command.output import check_folder
 from flexstage.show.command.terminal import print_note
 
-_Kind = TypeVar("_Kind", bound=Enum)
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -42,28 +41,23 @@ def word_option(
 ) -> Any:
     """Define an option with a choice of `words`, by default all values of the `kind`. `otherwise` maps likely mistakes to hints."""
     words = words or [str(each.value) for each in kind]
+
+    def read(word: str | Enum) -> Enum:
+        for each in kind:
+            if word in (each, each.value):  # the member: a default
+                return each
+        advice = f" {otherwise[str(word)]}." if word in otherwise else ""
+        print_note(f"error: {name}: must be {list_choices([str(each.value) for each in kind])} (got {word}).{advice}")
+        raise typer.Exit(BAD_INPUT)
+
     return typer.Option(
         name,
-        parser=_reader(name, kind, otherwise),
+        parser=read,
         metavar=f"<{'|'.join(words)}>",
         autocompletion=lambda: words,
         help=about,
         show_default=show_default,
     )
-
-
-def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Callable[[str | _Kind], _Kind]:
-    """A reader of the choices of an option; refuses others in one line."""
-
-    def read(word: str | _Kind) -> _Kind:
-        for each in kind:
-            if word in (each, each.value):  # the member: a default
-                return each
-        advice = f" {otherwise[str(word)]}." if word in otherwise else ""
-        print_note(f"error: {option}: must be {list_choices([str(each.value) for each in kind])} (got {word}).{advice}")
-        raise typer.Exit(BAD_INPUT)
-
-    return read
 
 
 Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]

@@ -58,18 +58,22 @@ def _along(stiffness: DirectionalStiffness) -> Array:
     return np.real(stiffness.along(angles).reshape(len(_ANGLES), -1)[:, 0])
 
 
-def _values(stiffness: DirectionalStiffness) -> str:
+def _principal(stiffness: DirectionalStiffness) -> tuple[float, float, float | None]:
+    """The largest and the least stiffness [N/um], and the direction of the largest [rad]; `None` if equal in all directions."""
     most, least = (float(value) for value in 1e-6 * first_design(stiffness.principal, 1))
-    if most - least < _ISOTROPIC * most:
+    return most, least, None if most - least < _ISOTROPIC * most else single(stiffness.angle)
+
+
+def _values(stiffness: DirectionalStiffness) -> str:
+    most, least, angle = _principal(stiffness)
+    if angle is None:
         return f"{number(most, 4)} in every direction"
-    angle = float(np.rad2deg(single(stiffness.angle)))
-    return f"{number(most, 4)} along {angle:.0f}°, {number(least, 4)} across"
+    return f"{number(most, 4)} along {float(np.rad2deg(angle)):.0f}°, {number(least, 4)} across"
 
 
 def _principal_axes(axes: Any, stiffness: DirectionalStiffness, colour: str) -> None:
-    most, least = (float(value) for value in 1e-6 * first_design(stiffness.principal, 1))
-    if most - least < _ISOTROPIC * most:
+    most, least, angle = _principal(stiffness)
+    if angle is None:
         return
-    angle = single(stiffness.angle)
     for turn, reach in ((0.0, most), (0.5 * np.pi, least)):
         axes.plot([angle + turn, angle + turn + np.pi], [reach, reach], color=colour, linewidth=0.7, linestyle="--")

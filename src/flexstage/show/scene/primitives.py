@@ -20,13 +20,13 @@ from flexstage.spatial.frame import Frame
 _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
 
 
-def first_value(value: Number | None, default: float = 0.0) -> float:
-    """Return the value of the first design of a batch as a float, or the default for `None`.
+def first_value(value: Number | None) -> float:
+    """Return the value of the first design of a batch as a float, or 0 for `None`.
 
     >>> first_value(np.array([2.0, 3.0])), first_value(None)
     (2.0, 0.0)
     """
-    return default if value is None else single(value)
+    return 0.0 if value is None else single(value)
 
 
 def part_length(part: Part) -> float:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from flexstage.analysis.complete import Analysis
-from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show.figures.budget import energy_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Block, BlockRow, Folded, Picture, Prose, Section, fold, section
-from flexstage.show.table import result_table
+from flexstage.show.table import matrix_table, optional, result_table
 from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.kinematics import (
     freedom_table,
     gauge_table,
-    jacobian_table,
     mapping_table,
     mobility_table,
     motion_table,
@@ -36,7 +34,7 @@ from flexstage.show.tables.statics import (
     principal_table,
     stiffness_table,
 )
-from flexstage.show.tables.units import lever_table, omitted_table
+from flexstage.show.tables.units import omitted_table
 
 
 def kinematics_section(analysis: Analysis) -> Section | None:
@@ -48,6 +46,10 @@ def kinematics_section(analysis: Analysis) -> Section | None:
     'Kinematics'
     """
     kinematics = analysis.kinematics
+    maps: list[Block] = [gauge_table(kinematics)] if kinematics.gauges else []
+    if kinematics.actuated:
+        jacobian = matrix_table("Platform motion per stroke, J = V R_a^-1", kinematics.jacobian)
+        maps = [mapping_table(kinematics), Folded("Platform motion per stroke; gauge mapping", (jacobian, *maps))]
     text = (
         "The ideal stage has rigid bodies, and hinges that are free about their intended axes and locked about all others. Mappings apply "
         "to small motions about the undeformed configuration, at the platform's reference point."
@@ -57,19 +59,12 @@ def kinematics_section(analysis: Analysis) -> Section | None:
         [
             Prose(text),
             mobility_table(kinematics),
-            *_mappings(kinematics),
+            *maps,
             motion_table(kinematics),
             Folded("Free DOFs of the links in the ideal model", (freedom_table(kinematics),)),
             fold("Free internal modes and redundant constraints", result_table(kinematics.idle), result_table(kinematics.redundant)),
         ],
     )
-
-
-def _mappings(kinematics: Kinematics) -> list[Block]:
-    gauges = [gauge_table(kinematics)] if kinematics.gauges else []
-    if not kinematics.actuated:
-        return [*gauges]
-    return [mapping_table(kinematics), Folded("Platform motion per stroke; gauge mapping", (jacobian_table(kinematics), *gauges))]
 
 
 def stiffness_section(analysis: Analysis) -> Section | None:
@@ -91,7 +86,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
         [
             Prose("Stiffness of the platform at its reference point, with fixed actuators."),
             stiffness_table(statics),
-            *([] if analysis.freedoms is None else [freedom_stiffness_table(analysis.freedoms)]),
+            optional(freedom_stiffness_table, analysis.freedoms),
             principal_table(statics),
             BlockRow((Picture(polar, caption), BlockRow((centre_table(statics), *sag)))),
             result_table(analysis.units or {}),
@@ -100,7 +95,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
                 compliance_table(statics),
                 direction_table(statics),
                 *(() if analysis.mass is None else mass_tables(analysis.mass)),
-                None if analysis.units is None else lever_table(analysis.units),
+                result_table({name: unit.lever for name, unit in (analysis.units or {}).items() if unit.lever is not None}),
             ),
         ],
     )

@@ -12,7 +12,7 @@ from flexstage.show.display import NO_VALUE, percent
 from flexstage.show.page import Block, Folded, Prose, Section, fold, section
 from flexstage.show.scene.primitives import first_value
 from flexstage.show.table import PAGE_ROWS, Column, Table, text_table
-from flexstage.show.tables.description import provenance_table, requirement_lines, source_table, value_tables
+from flexstage.show.tables.description import provenance_table, source_table, value_tables
 from flexstage.spatial.frame import COMPONENTS
 
 _LIMITS = {
@@ -54,7 +54,7 @@ def description_section(mechanism: Mechanism) -> Section | None:
             provenance_table(mechanism),
             source_table(mechanism),
             Folded("Every value", values),
-            fold("Requirements as written", requirement_lines(mechanism)),
+            fold("Requirements as written", text_table("Requirements", ["requirement", "demand"], mechanism.requirements)),
         ],
     )
 

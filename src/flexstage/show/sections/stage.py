@@ -22,8 +22,8 @@ _SIDES = (
 )
 
 
-def stage_section(data: StageData, *, motion: str | None = None, ghost: str = "", said: str = "") -> Section | None:
-    """Make the section of the animated stage. It shows the stage named "stage" in the page and, in the background, the stage named `ghost`.
+def stage_section(data: StageData, *, motion: str | None = None, said: str = "") -> Section | None:
+    """Make the section of the animated stage, which is named "stage" in the page.
 
     The animation starts with `motion`, by default the `first_motion` of the data. `said` is the text below the stage.
 
@@ -34,7 +34,7 @@ def stage_section(data: StageData, *, motion: str | None = None, ghost: str = ""
     """
     caption = "The platform is translucent. A thin line connects a hinge to its body if the outline of the body does not reach the hinge."
     picture = Picture(to_svg(stage_picture(data), "corner", "The stage from above its front corner"), caption)
-    viewer = Viewer("stage", (picture,), first_motion(data) if motion is None else motion, ghost)
+    viewer = Viewer("stage", (picture,), first_motion(data) if motion is None else motion)
     return section("The stage", [viewer, Legend(legend(data)), Prose(said) if said else None])
 
 

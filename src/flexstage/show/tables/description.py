@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from itertools import groupby
 from typing import TypeAlias
 
 from flexstage.base.number import Number
@@ -107,7 +108,7 @@ def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, 
     tags = provenance(mechanism)
     known = {address: (value, node.measures) for address, value, node in node_of(Mechanism).numbers(mechanism)}
     groups: dict[str, list[tuple[str, tuple[str, ...]]]] = {}
-    for addresses in _join_components(tuple(tags)):
+    for addresses in (tuple(components) for _, components in groupby(tags, _owner)):
         group, name = _group_of(mechanism, addresses)
         groups.setdefault(group, []).append((name, addresses))
     heads = ["value", Column("", numeric=True), "unit", "tag", "source"]
@@ -146,35 +147,16 @@ def source_table(mechanism: Mechanism) -> Table | None:
     return text_table("Sources", ["", "source"], {**mechanism.sources, **own})
 
 
-def requirement_lines(mechanism: Mechanism) -> Table | None:
-    """Tabulate the requirements as written in the description; `None` without requirements.
-
-    >>> requirement_lines(Mechanism("", requirements={"stroke.x": "at least 50 um"})).texts()[1]
-    ['stroke.x', 'at least 50 um']
-    """
-    return text_table("Requirements", ["requirement", "demand"], mechanism.requirements)
-
-
-def _join_components(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """Addresses of a vector's components together, others separately."""
-    gathered: list[str] = []
-    for address in addresses:
-        owner, _, last = address.rpartition(".")
-        if gathered and (gathered[0].rpartition(".")[0] != owner or last not in COMPONENTS):
-            yield tuple(gathered)
-            gathered = []
-        if last in COMPONENTS and owner:
-            gathered.append(address)
-        else:
-            yield (address,)
-    if gathered:
-        yield tuple(gathered)
+def _owner(address: str) -> str:
+    """The address of the vector to which a component belongs; other addresses as they are."""
+    owner, _, last = address.rpartition(".")
+    return owner if owner and last in COMPONENTS else address
 
 
 def _group_of(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, str]:
     """The kind of entry of an address, and the name within it."""
-    address = next(iter(addresses))
-    address = address.rpartition(".")[0] if len(addresses) > 1 else address
+    address, *others = addresses
+    address = _owner(address) if others else address
     first, _, rest = address.partition(".")
     if "/" in first or address in mechanism.overrides or first not in TITLES or not rest:
         return ("overrides" if "/" in first or address in mechanism.overrides else "", address)

@@ -123,17 +123,6 @@ def gauge_table(kinematics: Kinematics) -> Table:
     return matrix_table("Gauge mapping R_s", kinematics.gauge_mapping, units=("mrad",))
 
 
-def jacobian_table(kinematics: Kinematics) -> Table:
-    """Tabulate the Jacobian J = dx/da: the platform motion x per actuator stroke a.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.models.ideal import ideal
-    >>> jacobian_table(ideal(double_triangle())).texts()[3][-1]
-    '1'
-    """
-    return matrix_table("Platform motion per stroke, J = V R_a^-1", kinematics.jacobian)
-
-
 def motion_table(kinematics: Kinematics) -> Table | None:
     """Tabulate V, the ideal motions of a platform with fewer than six DOFs. Returns `None` for platforms with six DOFs.
 

@@ -22,8 +22,13 @@ def mode_table(modes: Modes) -> Table | None:
     ['3', '126.16', 'z', '87.47 %', '99.74 %', 'out of plane', 'platform']
     """
     listed = listed_modes(modes)
-    notes = [PLATFORM_MODES, *_partial(modes), *_unlisted(modes, listed), *batch_note(modes.frequencies, 1)]
-    return result_table(tuple(map(modes.mode, listed)), notes=notes, provenance=modes.provenance)
+    notes = [PLATFORM_MODES]
+    if modes.partial:
+        notes.append(f"Only the lowest {len(modes.names)} modes of {len(modes.coordinates):,} DOFs were computed.")
+    if rest := len(modes.names) - len(listed):
+        notes.append(f"{rest} higher modes were computed and are not listed.")
+    found = tuple(map(modes.mode, listed))
+    return result_table(found, notes=[*notes, *batch_note(modes.frequencies, 1)], provenance=modes.provenance)
 
 
 def listed_modes(modes: Modes) -> tuple[int, ...]:
@@ -36,13 +41,3 @@ def listed_modes(modes: Modes) -> tuple[int, ...]:
     """
     last = max((*modes.platform, *modes.local), default=modes.listed)
     return tuple(range(min(len(modes.names), last + 1 + _FURTHER)))
-
-
-def _partial(modes: Modes) -> list[str]:
-    most = f"Only the lowest {len(modes.names)} modes of {len(modes.coordinates):,} DOFs were computed."
-    return [most] if modes.partial else []
-
-
-def _unlisted(modes: Modes, listed: tuple[int, ...]) -> list[str]:
-    rest = len(modes.names) - len(listed)
-    return [f"{rest} higher modes were computed and are not listed."] if rest > 0 else []

@@ -20,7 +20,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.undetermined import floats
 from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
-from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
+from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, optional, result_table
 from flexstage.show.tables.lost_motion import loss_table
 from flexstage.show.tables.requirements import margin_text, rank, value_text, verdict_table, verdict_text
 from flexstage.spatial.frame import COMPONENTS, MOTION, WRENCH_UNITS
@@ -115,8 +115,8 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
     yield floating_line(analysis.linear)
     axes = axis_table(analysis)
     yield axes if explained or axes is None else replace(axes, notes=())
-    yield None if analysis.modes is None else _platform_modes(analysis.modes)
-    yield None if analysis.modes is None else lowest_mode(analysis.modes)
+    yield optional(_platform_modes, analysis.modes)
+    yield optional(lowest_mode, analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield "\n".join(filter(None, (_strength_text(analysis), load_line(analysis), small_line(analysis)))) or None
 
@@ -203,7 +203,7 @@ def _platform_modes(modes: Modes) -> Table | None:
         notes = [f"{count} between {lowest} Hz and 1.5 times the highest platform frequency."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
-    return None if table is None else merge_rows(table)
+    return optional(merge_rows, table)
 
 
 def lowest_mode(modes: Modes) -> str | None:

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.base.units.quantity import Quantity
 from flexstage.parts.profile import single
-from flexstage.show.display import DIGITS, field_unit, format_value, number, percent
+from flexstage.show.display import DIGITS, field_unit, format_value, percent
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 _LEAST = 0.01
@@ -98,8 +98,7 @@ def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str
     form = field_unit(quantity)
     if 0.0 < abs(value * form.factor) < _LEAST:
         return format_value(value, quantity.si, digits)
-    text = number(value * form.factor, digits)
-    return text if form.unit == "1" else f"{text} {form.unit}"
+    return form.format(value, digits)
 
 
 def margin_text(verdict: Verdict) -> str:

@@ -84,8 +84,8 @@ def _points(statics: Statics) -> str:
     return statics.read_point if same else f"{statics.read_point}, loaded at {statics.load_point}"
 
 
-def direction_table(statics: Statics, load: float = _LOAD) -> Table:
-    """Tabulate displacement and stiffness for several directions of a force `load` [N] in the plane, as in Table 1 of Shin & Moon.
+def direction_table(statics: Statics) -> Table:
+    """Tabulate displacement and stiffness for several directions of a force of 100 N in the plane, as in Table 1 of Shin & Moon.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -95,9 +95,9 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
     """
     degrees = np.arange(0, 180, _STEP)
     free, held = (_along(item, np.deg2rad(degrees)) for item in (statics.free, statics.held))
-    heads = (f"displacement at {number(load)} N", "stiffness, others free", "stiffness, others fixed")
+    heads = (f"displacement at {number(_LOAD)} N", "stiffness, others free", "stiffness, others fixed")
     with np.errstate(divide="ignore"):
-        values = np.stack([load / free, free, held], axis=-1)
+        values = np.stack([_LOAD / free, free, held], axis=-1)
     found = Matrix(values, tuple(map(str, degrees)), heads, (("m", "N/m", "N/m"),) * len(degrees))
     return column_table("Stiffness by direction in the plane", found, head="direction [deg]", notes=["Measured from x towards y."])
 

@@ -14,7 +14,7 @@ from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Number
 from flexstage.parts.profile import single
 from flexstage.show.display import format_value, number
-from flexstage.show.table import Table, first_design, merge_rows, result_table
+from flexstage.show.table import Table, first_design, merge_rows, optional, result_table
 from flexstage.spatial.frame import MOTION
 
 
@@ -31,7 +31,7 @@ def stroke_tables(workspace: Workspace) -> Iterator[Table | None]:
     """Tabulate the platform's strokes along single coordinates, ideal and with corrected lost motion, and the required actuator strokes."""
     yield result_table(workspace.single_axis)
     yield result_table(workspace.corrected, title="Single-axis strokes with corrected lost motion")
-    yield None if workspace.worst_case is None else corner_table(workspace.worst_case)
+    yield optional(corner_table, workspace.worst_case)
 
 
 def corner_table(corner: Utilisation) -> Table | None:

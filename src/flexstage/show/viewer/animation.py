@@ -40,13 +40,13 @@ _Label: TypeAlias = tuple[str, str, str, float | None]
 """Name of a small motion, its label in a list, its remark, its frequency [Hz] if it has one."""
 
 
-def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: str = "") -> StageData:
+def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke) -> StageData:
     """Return viewer data of a stage along a load path: one motion through its points, and the first modes at its last stable point.
 
     Flexures follow their centre lines; parts that are known only by a 6x6 matrix are interpolated linearly between their ends. Points
-    without an equilibrium are skipped. `text` is the text of the design file, in which the line numbers of parts are found.
+    without an equilibrium are skipped.
     """
-    still = still_data(mechanism, text=text)
+    still = still_data(mechanism)
     motions = [_along(still, path.state, path.drive, found), *_modes_there(still, path)]
     return replace(still, motions=tuple(motions), notes=tuple(str(each) for each in found.warnings))
 
@@ -103,9 +103,7 @@ def curves_of(along: Matrix) -> tuple[Curve, ...]:
     The first curve is the quantity that is varied.
     """
     return tuple(
-        Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
-        for name, values, form in quantities_of(along)
-        if name != "unstable"
+        Curve(name, to_typography(form.text), values * form.factor) for name, values, form in quantities_of(along) if name != "unstable"
     )
 
 
@@ -218,7 +216,10 @@ def _poses(still: StageData, state: State) -> Array:
     references = _references(still)
     lines = centre_lines(state)
     rows = [np.concatenate([position, logarithm(turn)], axis=-1)]
-    at = _moved_point(references, position, turn)
+
+    def at(body: int, point: Array) -> Array:
+        return references[body] + position[:, body] + turn[:, body] @ (point - references[body])
+
     rows += [_piece(carrier, lines.get(carrier.name), at, turn) for carrier in _bending(still)]
     return np.nan_to_num(np.concatenate(rows, axis=1))
 
@@ -227,17 +228,7 @@ def _references(still: StageData) -> Array:
     return np.stack([np.zeros(3) if name == GROUND else still.bones.references[name] for name in still.bodies])
 
 
-_At = Callable[[int, Array], Array]
-
-
-def _moved_point(references: Array, position: Array, turn: Array) -> _At:
-    def at(body: int, point: Array) -> Array:
-        return references[body] + position[:, body] + turn[:, body] @ (point - references[body])
-
-    return at
-
-
-def _piece(carrier: _Carrier, line: Line | None, at: _At, turn: Array) -> Array:
+def _piece(carrier: _Carrier, line: Line | None, at: Callable[[int, Array], Array], turn: Array) -> Array:
     """Displacements and rotation vectors (b, NODES, 6) along a piece: of a flexure its centre line, else interpolated between its ends."""
     shares = np.linspace(0.0, 1.0, NODES)
     drawn = carrier.ends[0] + shares[:, None] * (carrier.ends[1] - carrier.ends[0])

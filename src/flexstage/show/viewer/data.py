@@ -16,7 +16,7 @@ from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.finding import DesignError, name_first
 from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expand import Assembly, expand
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.store.lines import line_numbers
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
@@ -24,9 +24,9 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.show.scene.primitives import simplification
 from flexstage.show.scene.skin import Kind
-from flexstage.show.scene.stage import Label, Scene, scene
+from flexstage.show.scene.stage import Label, scene
 from flexstage.show.viewer.bend import Bend, bend_of
-from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of
+from flexstage.show.viewer.mesh import Mesh, mesh_of
 from flexstage.show.viewer.motions import (
     Curve,
     Motion,
@@ -177,13 +177,13 @@ def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
     assembly = expand(mechanism)
     steps = max(1, min(_STEPS, _PIECES // max(1, len(assembly.links))))
     seen = scene(mechanism, steps=steps)
-    bodies, shown = body_names(assembly.bodies), {piece.name: piece for piece in seen.pieces}
+    bodies, shown = (GROUND, *assembly.bodies), {piece.name: piece for piece in seen.pieces}
     describer = Describer(mechanism, assembly, line_numbers(text))
     numbers = {name: number for number, name in enumerate(bodies)}
     things = tuple(describer.thing(name, each.kind, *(numbers[body] for body in each.bodies)) for name, each in shown.items())
     mesh = mesh_of(seen.pieces, numbers, {name: number for number, name in enumerate(shown)}, _bends(assembly), bend_of(None))
     low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
-    size, middle = _size(seen, low, high), 0.5 * (low + high)
+    size, middle = float(np.sqrt(np.sum((high - low) ** 2))) or seen.size, 0.5 * (low + high)
     coarse = f"each of the {len(assembly.links)} links is drawn with {steps} segment{'s' if steps > 1 else ''} when bent"
     notes = (*([coarse] if steps < _STEPS else []), *_simplifications(assembly))
     return StageData(mechanism.name or "stage", size, middle, bodies, Skeleton(seen.references), things, seen.labels, mesh, (), notes)
@@ -196,10 +196,6 @@ def _simplifications(assembly: Assembly) -> Iterator[str]:
     for said in dict.fromkeys(filter(None, found.values())):
         names = [name for name, each in found.items() if each == said]
         yield f"drawn {said}: {name_first(names)}"
-
-
-def _size(seen: Scene, low: Array, high: Array) -> float:
-    return float(np.sqrt(np.sum((high - low) ** 2))) or seen.size
 
 
 def _bends(assembly: Assembly) -> Mapping[str, Bend]:

@@ -1,7 +1,7 @@
 """The viewer in an HTML page: HTML elements, the data of stages, and the viewer's program. No other file is loaded.
 
-A page contains any number of `element`s, one `data_script` for each stage and one `bundle_script`. The script finds the elements and
-draws each when it becomes visible. Without scripts or WebGL, the content of the element is shown.
+A page contains any number of `element`s, one `data_script` for each stage, and the program (`bundle`) in one script. The script finds the
+elements and draws each when it becomes visible. Without scripts or WebGL, the content of the element is shown.
 """
 
 from __future__ import annotations
@@ -40,15 +40,6 @@ def bundle() -> str:
     return resources.files("flexstage.show").joinpath("static/viewer.js").read_text(encoding="utf-8")
 
 
-def bundle_script() -> str:
-    """Write the script element with the viewer's program; a page needs it once, after all elements and data.
-
-    >>> bundle_script().count("</script>")
-    1
-    """
-    return f"<script>{bundle()}</script>"
-
-
-def fragment(data: StageData, *, key: str = "stage", motion: str = "", instead: str = "") -> str:
+def fragment(data: StageData, *, motion: str = "", instead: str = "") -> str:
     """Write the content of a page with one viewer: element, data and program."""
-    return element(key, motion=motion, instead=instead) + data_script(key, data) + bundle_script()
+    return element("stage", motion=motion, instead=instead) + data_script("stage", data) + f"<script>{bundle()}</script>"

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.mechanism import GROUND
-from flexstage.show.scene.skin import DrawnSurface, join
+from flexstage.show.scene.skin import join
 from flexstage.show.scene.stage import DrawnPiece
 from flexstage.show.viewer.bend import COLUMNS, Bend
 
@@ -77,7 +76,7 @@ def mesh_of(
     >>> mesh_of((), {}, {}, {}, Bend(np.zeros(1), np.zeros((1, 5)))).points.shape
     (0, 3)
     """
-    whole = join([_rounded(piece.skin) for piece in pieces])
+    whole = join([replace(piece.skin, points=_single(piece.skin.points)) for piece in pieces])
     carriers, carrier = np.unique(np.array([_carrier(piece, bodies) for piece in pieces]).reshape(-1, 8), axis=0, return_inverse=True)
     rows = [_stations(piece, bends.get(piece.name, straight)) for piece in pieces]
     stations, station = np.unique(np.concatenate([np.zeros((0, COLUMNS)), *rows]), axis=0, return_inverse=True)
@@ -100,10 +99,6 @@ def _single(values: Array) -> Array:
     return values.astype(np.float32).astype(float) + 0.0
 
 
-def _rounded(skin: DrawnSurface) -> DrawnSurface:
-    return replace(skin, points=_single(skin.points))
-
-
 def _carrier(piece: DrawnPiece, bodies: Mapping[str, int]) -> Array:
     """The bodies of a piece by number, and its ends (8,): the middles of its first and its last ring; zeros if rigid."""
     first, second = (bodies[name] for name in piece.bodies)
@@ -116,12 +111,3 @@ def _stations(piece: DrawnPiece, bend: Bend) -> Array:
     """Rows (k, 5) of a piece's bend at its points; zeros if it is rigid."""
     first, second = piece.bodies
     return np.zeros((len(piece.skin.share), COLUMNS)) if first == second else _single(bend.at(piece.skin.share))
-
-
-def body_names(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of the ground, which has number 0, and of the bodies in sequence.
-
-    >>> body_names(["platform"])
-    ('ground', 'platform')
-    """
-    return (GROUND, *names)

@@ -183,13 +183,23 @@ def mode_motions(
         yield Motion(Group.MODE, str(index + 1), to_typography(label), bones.at_origin(twists), remark, frequency, energy)
 
 
+def strain_shares(model: LinearModel, shapes: Array, inputs: Array | None = None) -> dict[str, Array]:
+    """Return the fraction (k,) of the strain energy in every link and other elastic part, for k shapes (n, k) and inputs (m, k).
+
+    The fractions are zero for a shape without strain energy. For a batch, the fractions belong to the first design.
+    """
+    deformed = {name: first_design(each, 2) for name, each in part_deformation(model, shapes, inputs).items()}
+    parts = {name: np.einsum("ik,ij,jk->k", each, first_design(model.stiffness[name].law, 2), each) for name, each in deformed.items()}
+    total = sum(parts.values(), np.zeros(shapes.shape[1]))
+    return {name: each / np.where(total > 0.0, total, np.inf) for name, each in parts.items()}
+
+
 def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> dict[str, float] | None:
-    """Strain-energy fractions by contribution, of the first design; `None` without energy."""
-    given = None if inputs is None else inputs[:, None]
-    deformed = {name: first_design(each, 2)[:, 0] for name, each in part_deformation(model, motion[:, None], given).items()}
-    parts = {name: float(each @ first_design(model.stiffness[name].law, 2) @ each) for name, each in deformed.items()}
-    total = sum(parts.values())
-    return {name: each / total for name, each in parts.items()} if total > 0.0 else None
+    """Strain-energy fractions of a shape (n,); `None` without energy."""
+    found = {
+        name: float(each[0]) for name, each in strain_shares(model, motion[:, None], None if inputs is None else inputs[:, None]).items()
+    }
+    return found if any(found.values()) else None
 
 
 class Bearing:
@@ -201,12 +211,8 @@ class Bearing:
         self._limits = stroke_limits(mechanism) if model.strokes else None
         self._model = model
 
-    def at(self, shape: Array, inputs: Array | None = None) -> dict[str, float] | None:
-        """Compute the utilisation of each link for a shape (n,) of the model's coordinates and `inputs` (m,); `None` if unknown."""
-        return self.of_all(shape[:, None], None if inputs is None else inputs[:, None])[0]
-
-    def of_all(self, shapes: Array, inputs: Array | None = None) -> list[dict[str, float] | None]:
-        """Compute the utilisation of each link for k shapes (n, k) and inputs (m, k)."""
+    def at(self, shapes: Array, inputs: Array | None = None) -> list[dict[str, float] | None]:
+        """Compute the utilisation of each link for k shapes (n, k) of the model's coordinates and inputs (m, k); `None` if unknown."""
         if not self._links or not shapes.shape[1]:
             return [None] * shapes.shape[1]
         rows = self._model.output_index(tuple(f"{link}.{force}" for link in self._links for force in FORCES))
@@ -239,7 +245,7 @@ def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinemat
     driven[columns, np.arange(len(names))] = amounts
     shapes, ends = amounts * moved, [bearing.most(name) for name in names]
     times = np.array([0.0 if end is None else end for end in ends]) / amounts
-    stresses = bearing.of_all(times * shapes, times * driven)
+    stresses = bearing.at(times * shapes, times * driven)
     for place, (name, unit, amount, most, stress) in enumerate(zip(names, units, amounts.tolist(), ends, stresses, strict=True)):
         inputs, shape = driven[:, place], shapes[:, place]
         twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references), inputs))
@@ -277,7 +283,7 @@ def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics
         shape = first_design(displacement(model, load[..., None]), 2)[:, 0]
         if np.any(shape):
             twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references)))
-            energy, stress = _energy(model, shape), bearing.at(shape)
+            energy, (stress,) = _energy(model, shape), bearing.at(shape[:, None])
             yield Motion(Group.DEFLECTION, name, name, twists, "actuators fixed", None, energy, stress, f"under {name} alone")
 
 

@@ -12,7 +12,7 @@ from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.lines import line_of
 from flexstage.parts.part import inner
-from flexstage.show.display import field_unit, format_value, number, to_typography
+from flexstage.show.display import field_unit, format_value, to_typography
 from flexstage.show.scene.primitives import first_value
 from flexstage.show.scene.skin import Kind
 from flexstage.show.tables.description import kind_name
@@ -39,7 +39,7 @@ class DrawnEntry:
 
 
 class Describer:
-    """Builder of the descriptions of drawn entries by name. Data of a part in several links are computed once."""
+    """Builder of the descriptions of drawn entries by name."""
 
     def __init__(self, mechanism: Mechanism, assembly: Assembly, lines: Mapping[str, int]) -> None:
         self._mechanism = mechanism
@@ -49,7 +49,6 @@ class Describer:
         self._gauges = {name: key for key in mechanism.gauges for name in copy_names(key)}
         self._owners = {address: body for body, item in assembly.bodies.items() for address in item.solids}
         self._links = {**assembly.links, **assembly.superelements}
-        self._facts: dict[int, tuple[Fact, ...]] = {}
 
     def thing(self, name: str, kind: Kind, first: int, second: int) -> DrawnEntry:
         """Describe the drawn entry named `name`. `first` and `second` are the numbers of the bodies that the entry connects."""
@@ -63,27 +62,22 @@ class Describer:
         if (link := self._links.get(name) or self._links.get(name.removesuffix(_FOOT))) is not None:
             return "ground" if name.endswith(_FOOT) else kind_name(link.part), link_address(self._mechanism, link), self._link_facts(link)
         if (gauge := self._assembly.gauges.get(name)) is not None:
-            return gauge.gauge.kind, f"gauges.{self._gauges.get(name, name)}", self._data(gauge.gauge)
+            return gauge.gauge.kind, f"gauges.{self._gauges.get(name, name)}", tuple(part_facts(gauge.gauge))
         if name in self._assembly.bodies:
             return "body", body_address(self._copies, name), self._body_facts(name)
         placed = self._owners.get(name)
         solids = self._assembly.ground if placed is None else self._assembly.bodies[placed].solids
         solid = solids[name].solid
         drawn, _, own = name.rpartition(".")
-        facts = self._data(solid) + (() if placed is None else (("body", placed), *self._body_facts(placed)))
+        facts = (*part_facts(solid), *(() if placed is None else (("body", placed), *self._body_facts(placed))))
         return type(getattr(solid, "solid", solid)).__name__.lower(), f"{body_address(self._copies, drawn)}.solids.{own}", facts
 
     def _link_facts(self, link: PlacedLink | PlacedSuperelement) -> tuple[Fact, ...]:
-        return (("part", link.link.part), ("joins", " – ".join(link.joins)), *self._data(inner(link.part)))
+        return (("part", link.link.part), ("joins", " – ".join(link.joins)), *part_facts(inner(link.part)))
 
     def _body_facts(self, name: str) -> tuple[Fact, ...]:
         mass = self._assembly.bodies[name].mass
         return () if mass is None else (("mass", format_value(first_value(mass.mass), "kg")),)
-
-    def _data(self, record: object) -> tuple[Fact, ...]:
-        if id(record) not in self._facts:
-            self._facts[id(record)] = tuple(part_facts(record))
-        return self._facts[id(record)]
 
 
 def link_address(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
@@ -102,6 +96,5 @@ def part_facts(record: object) -> Iterator[Fact]:
     """Yield the scalar numbers of a part or another record, each with the name of its key. Positions and matrices are left out."""
     for address, value, node in node_of(type(record)).numbers(record):
         if "." not in address or address.startswith("profile."):
-            form = field_unit(node.quantity)
-            text = number(first_value(value) * form.factor)
-            yield address.replace("_", " ").replace(".", " "), to_typography(text if form.unit == "1" else f"{text} {form.unit}")
+            text = field_unit(node.quantity).format(first_value(value))
+            yield address.replace("_", " ").replace(".", " "), to_typography(text)

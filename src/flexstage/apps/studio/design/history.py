@@ -42,7 +42,7 @@ class Stored:
         if found != self.digest and not over:
             what = "changed on disk by another program" if found else "removed by another program"
             raise refuse(self.path.name, what, "Reload it (your text remains in undo), or overwrite it")
-        raw = self.mark + text.replace("\n", self.ending).encode() if self.ending != "\n" else self.mark + text.encode()
+        raw = self.mark + text.replace("\n", self.ending).encode()
         write(self.path, raw)
         return replace(self, text=text, digest=_digest(raw))
 

@@ -40,10 +40,14 @@ class Journal:
     token: str = ""
     _is_kept: bool = field(default=False, init=False)
 
+    @property
+    def _place(self) -> Path:
+        return _folder() / f"{_stem(self.path)}-{process_mark()}.json"
+
     def keep(self, text: str, pins: Mapping[str, str], digest: str) -> None:
         """Replace the stored text. Raises `DesignError` if the text cannot be stored."""
         draft = Draft(time.time(), text, pins, digest, self.port, self.token)
-        place = _folder() / f"{_stem(self.path)}-{process_mark()}.json"
+        place = self._place
         try:
             place.parent.mkdir(mode=0o700, parents=True, exist_ok=True)  # for this user alone: it has the token
         except OSError as error:
@@ -56,7 +60,7 @@ class Journal:
     def clear(self) -> None:
         """Remove the journal: no unsaved edit remains."""
         if self._is_kept:
-            discard(_folder() / f"{_stem(self.path)}-{process_mark()}.json")
+            discard(self._place)
             self._is_kept = False
 
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from functools import lru_cache
 from importlib import resources
 
 from flexstage.apps.studio.protocol import Snippet
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 
 
-@lru_cache(maxsize=1)
 def snippets() -> tuple[Snippet, ...]:
     """Return all snippets of the palette."""
     found = tomllib.loads(resources.files("flexstage.apps.studio").joinpath("palette.toml").read_text(encoding="utf-8"))

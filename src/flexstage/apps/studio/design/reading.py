@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -120,7 +119,7 @@ def _amounts(mechanism: Mechanism, lines: Mapping[str, int], stored: Mapping[str
             address,
             _group(address),
             number,
-            _text(number.hex(), quantity),
+            show(number, quantity) if quantity.si not in {"1", "mixed"} else f"{number:.12g}",
             quantity.si,
             unit,
             factor,
@@ -134,18 +133,10 @@ def _amounts(mechanism: Mechanism, lines: Mapping[str, int], stored: Mapping[str
         )
 
 
-@lru_cache(maxsize=4096)
-def _text(bits: str, quantity: Quantity) -> str:
-    """A number as in the file; cached, as most numbers of a design are unchanged."""
-    value = float.fromhex(bits)
-    return show(value, quantity) if quantity.si not in ("1", "mixed") else f"{value:.12g}"
-
-
-@lru_cache(maxsize=256)
 def _shown(quantity: Quantity) -> tuple[str, float]:
     """The display unit of a quantity, and its value in SI."""
     form = field_unit(quantity)
-    return ("", 1.0) if form.unit == "1" else (form.unit, 1.0 / form.factor)
+    return form.text, 1.0 / form.factor
 
 
 def _span(value: float, factor: float, bound: Bound | None) -> tuple[float, float]:
@@ -190,5 +181,4 @@ def finite(value: Any) -> float | None:
 
 
 def _sixfold(places: Iterable[str], components: Iterable[str]) -> Iterator[str]:
-    parts = tuple(components)
-    return (f"{place}.{component}" for place in places for component in parts)
+    return (f"{place}.{component}" for place in places for component in components)
