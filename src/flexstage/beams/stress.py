@@ -41,8 +41,13 @@ def has_section(part: Part) -> bool:
     >>> has_section(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))
     True
     """
+    return _factor(part) is not None
+
+
+def _factor(part: Part) -> Number | None:
+    """Notch factor K_t; `None` if unknown."""
     part_law = law_of(part)
-    return part_law is not None and part_law.concentration is not None and part_law.concentration(inner(part)) is not None
+    return None if part_law is None or part_law.concentration is None else part_law.concentration(inner(part))
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
@@ -65,12 +70,10 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     >>> round(float(result.nominal) / 1e6, 2), round(6 * 0.025 / (0.01 * 0.001**2) / 1e6, 2)
     (15.0, 15.0)
     """
-    own = inner(part)
-    part_law = law_of(own)
-    factor = None if part_law is None or part_law.beam is None or part_law.concentration is None else part_law.concentration(own)
-    if factor is None:  # guaranteed by has_section
+    factor = _factor(part)
+    if factor is None:
         return None
-    beam = beam_of(own, material)
+    beam = beam_of(inner(part), material)
     position = np.stack([-beam.points.position, beam.points.position], axis=-2)
     load = np.moveaxis(np.asarray(wrench), -1, 0)[..., None, None]
     equivalent = np.sqrt(_normal(beam, position, load) ** 2 + 3.0 * _tangential(beam, load) ** 2)

@@ -23,7 +23,6 @@ from flexstage.spatial.frame import COMPONENTS
 _POISSON = 0.3
 _TOO_SOFT = 0.05
 """Relative excess compliance about z above which wide parts get a warning."""
-_Bounds = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,28 +122,28 @@ def within(family: str, axis: str, hinge: HingeDimensions) -> Array:
     False
     """
     wide, tall = hinge.width / hinge.thickness, hinge.width / hinge.height
-    inside = _between(hinge.poisson, (0.2, 0.4)) & _between(wide, (1.0, np.inf))
+    inside = _between(hinge.poisson, 0.2, 0.4) & _between(wide, 1.0)
     if family in {"notch", "fillet"}:
-        inside &= _between(hinge.root**2, (0.0, 0.65 if axis == "y" else HIGHEST[family]))
+        inside &= _between(hinge.root**2, high=0.65 if axis == "y" else HIGHEST[family])
     if family in {"notch", "fillet"} and axis != "rz":
-        inside &= _between(hinge.root**2, (0.015, np.inf)) & _between(wide * hinge.root, (0.0, 20.0))
-        inside &= _between(tall, (0.0, 1.0 if axis == "y" else 3.0 if family == "notch" else 4.5))
+        inside &= _between(hinge.root**2, 0.015) & _between(wide * hinge.root, high=20.0)
+        inside &= _between(tall, high=1.0 if axis == "y" else 3.0 if family == "notch" else 4.5)
     if family == "notch":
-        inside &= _between(hinge.flatness, (0.2, 1.4)) & _between(hinge.across / hinge.thickness, (1.5 if axis == "y" else 1.0, np.inf))
+        inside &= _between(hinge.flatness, 0.2, 1.4) & _between(hinge.across / hinge.thickness, 1.5 if axis == "y" else 1.0)
     if family == "fillet":
-        inside &= _between((hinge.half - hinge.along) / hinge.thickness, (0.0, 12.0))
+        inside &= _between((hinge.half - hinge.along) / hinge.thickness, high=12.0)
     if family == "toroid":
-        inside &= _between(hinge.root**2, (0.015, HIGHEST[family]))
+        inside &= _between(hinge.root**2, 0.015, HIGHEST[family])
     if family in {"bar", "leaf"}:
         share = 0.5 * hinge.width / hinge.half
-        inside &= _between(share, (0.0, {("bar", "z"): 1.5, ("bar", "rz"): np.inf}.get((family, axis), 3.0)))
-        inside &= _between(2.0 * hinge.half / hinge.thickness, (3.0 if family == "bar" else 10.0, np.inf))
-    return inside & _between(1.0 / wide, (0.0, 0.2)) if family == "leaf" else inside
+        inside &= _between(share, high={("bar", "z"): 1.5, ("bar", "rz"): np.inf}.get((family, axis), 3.0))
+        inside &= _between(2.0 * hinge.half / hinge.thickness, 3.0 if family == "bar" else 10.0)
+    return inside & _between(1.0 / wide, high=0.2) if family == "leaf" else inside
 
 
-def _between(value: Array, bounds: _Bounds) -> Array:
+def _between(value: Array, low: float = 0.0, high: float = np.inf) -> Array:
     rounding = 1e-9
-    return (value >= bounds[0] * (1.0 - rounding)) & (value <= bounds[1] * (1.0 + rounding))
+    return (value >= low * (1.0 - rounding)) & (value <= high * (1.0 + rounding))
 
 
 def _real(number: Number) -> Array:

@@ -8,7 +8,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.mechanism.assembly.expand import PlacedLink
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.compliance_matrix import ComplianceMatrix, Origin
-from flexstage.parts.part import Restricted, material_of
+from flexstage.parts.part import inner, material_of
 
 
 def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
@@ -40,8 +40,8 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
     >>> as_drawn(double_triangle(), link) is link
     True
     """
-    inner = link.part.part if isinstance(link.part, Restricted) else link.part
-    kept = mechanism.parts.get(inner.replaces) if isinstance(inner, ComplianceMatrix) else None
+    own = inner(link.part)
+    kept = mechanism.parts.get(own.replaces) if isinstance(own, ComplianceMatrix) else None
     if kept is None:
         return link
     material = material_of(kept)

@@ -14,7 +14,7 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Pla
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.part import Part, Restricted
+from flexstage.parts.part import Part, Restricted, inner
 
 Freedoms = tuple[Freedom, ...]
 
@@ -38,8 +38,8 @@ def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]
 
 
 def _restrict(part: Part, elastic: Freedoms, free: Freedoms) -> Part:
-    inner = part.part if isinstance(part, Restricted) else part
-    return Joint(free) if isinstance(inner, Joint) else Restricted(inner, elastic, free)
+    own = inner(part)
+    return Joint(free) if isinstance(own, Joint) else Restricted(own, elastic, free)
 
 
 def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic: Freedoms, free: Freedoms) -> Mechanism:

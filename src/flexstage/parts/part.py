@@ -114,8 +114,7 @@ def push_of(part: Part) -> Number | None:
     >>> push_of(Joint()) is None
     True
     """
-    own = inner(part)
-    return None if isinstance(own, Joint) else own.push
+    return getattr(inner(part), "push", None)
 
 
 def strut_of(part: Part) -> Number | None:
@@ -124,8 +123,7 @@ def strut_of(part: Part) -> Number | None:
     >>> strut_of(Joint()) is None
     True
     """
-    own = inner(part)
-    return None if isinstance(own, Joint) else own.strut
+    return getattr(inner(part), "strut", None)
 
 
 def span(part: Part) -> Number:

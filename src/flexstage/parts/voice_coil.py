@@ -100,10 +100,9 @@ class Coil(ThrustActuator):
         """Limits of the current, each for continuous and for short use."""
         yield ForceLimit("peak current", self.peak_current, self.peak_current)
         rested = self.duty**-0.5
-        if self.continuous_current is not None:
-            yield ForceLimit("continuous current", self.continuous_current, self.continuous_current * rested, clips=False)
-        if self.heat_current is not None:
-            yield ForceLimit("heat", self.heat_current, self.heat_current * rested, clips=False)
+        for name, held in (("continuous current", self.continuous_current), ("heat", self.heat_current)):
+            if held is not None:
+                yield ForceLimit(name, held, held * rested, clips=False)
         if self.voltage is not None and self.resistance is not None:
             yield ForceLimit("voltage", self.voltage / self.resistance, self.voltage / self.resistance)
         if self.maximum is not None:

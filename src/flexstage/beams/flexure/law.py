@@ -109,10 +109,12 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
     twist, twist_form = _leaf_twist(resolution, section, material, length, rigidity, warps=warps)
     size = resolution.twist + resolution.across + resolution.bending
     shapes = fields(float(width / length), float(thickness / length), poisson, rule.size, resolution.fields)
-    plain = np.diag(1.0 / (2.0 * np.arange(resolution.bending) + 1.0))
     factor = 1.0 / (1.0 - poisson * poisson)
     form = scipy.linalg.block_diag(
-        twist_form, _squares(resolution.across) * (section.inertia_y / section.inertia_z), plain * factor, shapes.form * factor
+        twist_form,
+        _squares(resolution.across) * (section.inertia_y / section.inertia_z),
+        _squares(resolution.bending) * factor,
+        shapes.form * factor,
     )
     pull = poisson * factor * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, : resolution.bending]
     bend = slice(size - resolution.bending, size)

@@ -297,15 +297,22 @@ def lay_out(mechanism: Mechanism) -> Assembly:
     links = {link.name: link for whole in wholes for link in _members(mechanism, whole, compositions.get(id(whole.part)))}
     drawn = (*_bodies(mechanism, placed), *_inner_bodies(mechanism, described, compositions))
     joined = (*links.values(), *elements.values())
-    lent = _by_owner(drawn)
+    lent = [item for item in drawn if item.body.of is not None]
     bodies = {
-        item.name: PlacedBody(item.name, item.body, item.frame, (item, *lent.get(item.name, ())), joined, mechanism.materials)
+        item.name: PlacedBody(
+            item.name,
+            item.body,
+            item.frame,
+            (item, *(each for each in lent if each.body.of == item.name)),
+            joined,
+            mechanism.materials,
+        )
         for item in drawn
         if item.body.of is None
     }
     gauges = {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}
     require(_unknown_bodies(bodies, joined, gauges | {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
-    resting = lent.get(GROUND, ())
+    resting = [item for item in lent if item.body.of == GROUND]
     _ = [item.own for item in resting]  # their mass is unused, but an unknown one is refused
     ground = _placed_solids(resting)
     circuits = _circuits(links, {copy for copy, _, _ in placed})
@@ -489,15 +496,6 @@ def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnB
     for copy, unit, frame in placed:
         for name, body in drawn[unit].bodies.items():
             yield _DrawnBody(f"{copy}/{name}", body, materials, f"{unit}/{name}", frame, meant.get(copy, frame))
-
-
-def _by_owner(drawn: tuple[_DrawnBody, ...]) -> dict[str, list[_DrawnBody]]:
-    """Bodies of another one, by owner."""
-    lent: dict[str, list[_DrawnBody]] = {}
-    for item in drawn:
-        if item.body.of is not None:
-            lent.setdefault(item.body.of, []).append(item)
-    return lent
 
 
 def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Array]]]:

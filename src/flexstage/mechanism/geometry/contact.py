@@ -82,15 +82,19 @@ class _Thing:
         assert isinstance(self.form, Shaped)  # noqa: S101  only links are asked
         return self.form.end
 
+    def on_end(self, side: float, points: Array) -> Array:
+        """Points (n, 3) in the stage of points (n, 2) of an end face."""
+        return self.frame.point(np.column_stack([np.full(len(points), side * self.half), points]))
+
     @cached_property
     def face(self) -> tuple[Array, Array]:
-        """Points (n, 3) on a link's end face at its origin, with their shares of the area; rim points first."""
+        """Points (n, 2) on a link's end face, with their shares of the area; rim points first."""
         end, result = self.end, []
         for piece in end.pieces(_ANGLES):
             low, high = piece.min(axis=0), piece.max(axis=0)
             points, weights = _face(*(0.5 * (high - low)).tolist(), is_round=end.is_axisymmetric)
-            points = points + np.array([0.0, *(0.5 * (low + high))])
-            inside = within_polygon(points[:, 1:], piece, 0.0)
+            points = points + 0.5 * (low + high)
+            inside = within_polygon(points, piece, 0.0)
             result.append((points[inside], weights[inside] * np.prod(high - low)))
         points, weights = (np.concatenate(each) for each in zip(*result, strict=True))
         return points, weights / np.sum(weights)
@@ -310,7 +314,7 @@ def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
     """Contact of the end face on both sides, at points over its area."""
     points, weights = link.face
     axis = side * link.frame.rotation[:, 0]
-    face = link.frame.point(points + np.array([side * link.half, 0.0, 0.0]))
+    face = link.on_end(side, points)
     beyond, before = (np.any([_inside(each, face + step * axis) for each in met], axis=0) for step in (2.0 * TOUCHING, -2.0 * TOUCHING))
     depth = 0.0
     if float(weights @ before) > _SHARE:
@@ -324,11 +328,11 @@ def _face(y: float, z: float, *, is_round: bool) -> tuple[Array, Array]:
         radii = np.array([0.9995, 0.9, 0.7, 0.5, 0.3, 0.1])
         shares = np.array([0.0, 0.36, 0.28, 0.2, 0.12, 0.04])
         angles = 2.0 * np.pi * (np.arange(16) + 0.5) / 16
-        points = np.array([(0.0, y * r * np.cos(a), y * r * np.sin(a)) for r, a in product(radii, angles)])
+        points = np.array([(y * r * np.cos(a), y * r * np.sin(a)) for r, a in product(radii, angles)])
         return points, _widen(np.repeat(shares / 16.0, 16))
     stations = np.array([-0.9995, 0.9995, *(np.arange(10) - 4.5) / 5.0])
     shares = np.array([0.0, 0.0, *[0.1] * 10])
-    points = np.array([(0.0, y * u, z * v) for u, v in product(stations, stations)])
+    points = np.array([(y * u, z * v) for u, v in product(stations, stations)])
     return points, _widen(np.array([a * b for a, b in product(shares, shares)]))
 
 
@@ -336,12 +340,6 @@ def _widen(weights: Array) -> Array:
     """Weights with rim points slightly above the tolerated share."""
     rim = weights == 0.0
     return np.where(rim, 1.5 * _SHARE, weights * (1.0 - 1.5 * _SHARE * np.count_nonzero(rim)))
-
-
-def _rim(link: _Thing, side: float) -> Array:
-    """Corners (n, 3) of a link's end face, in its frame."""
-    rim = link.end.outline(_ANGLES)
-    return np.column_stack([np.full(len(rim), side * link.half), rim])
 
 
 def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
@@ -367,7 +365,7 @@ def _depth(met: Sequence[_Thing], face: Array, inward: Array, most: float) -> fl
 
 def _end_findings(link: _Thing, side: float, body: str, met: Sequence[_Thing], meeting: _Meeting) -> Iterator[Finding]:
     if meeting.share == 0.0 and meeting.depth == 0.0:
-        corners = link.frame.point(_rim(link, side))
+        corners = link.on_end(side, link.end.outline(_ANGLES))
         gap = min(distance(corners, piece.points) for each in met for piece in each.pieces)
         if gap > TOUCHING:
             advice = f"Move or lengthen the link or the outline by {_text(gap)}"

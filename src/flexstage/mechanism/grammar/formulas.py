@@ -202,9 +202,10 @@ def dependents(mechanism: Mechanism, *names: str) -> tuple[str, ...]:
     ('numbers.half', 'parts.leaf.length')
     """
     known = {address: parse_expression(text).names for address, text in mechanism.formulas.items()}
+    inner = {address.removeprefix(PREFIX): used for address, used in known.items() if address.startswith(PREFIX)}
     moved = set(names)
     ordered: list[str] = []
-    for number in TopologicalSorter(_references(known)).static_order():
+    for number in TopologicalSorter(inner).static_order():
         if known.get(PREFIX + number, frozenset()) & moved:
             moved.add(number)
             ordered.append(PREFIX + number)
@@ -269,8 +270,3 @@ def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for name in mechanism.numbers:
         if name not in used:
             yield Finding(PREFIX + name, "no formula or requirement uses it", "Use it in a formula, or remove it")
-
-
-def _references(known: Mapping[str, frozenset[str]]) -> dict[str, frozenset[str]]:
-    """Names that each named number depends on."""
-    return {address.removeprefix(PREFIX): names for address, names in known.items() if address.startswith(PREFIX)}

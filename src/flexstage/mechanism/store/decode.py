@@ -47,7 +47,12 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
     mechanism: Any = None
     try:
         reader.note(told)
-        mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
+        _check_format(reader, raw, FORMAT)
+        reader.note(numbers.findings)
+        try:
+            mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
+        except DesignError as error:
+            reader.note(error.findings)
     except EnoughError:
         reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     if reader.findings:
@@ -152,15 +157,10 @@ class _Files:
 
 
 def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: frozenset[str]) -> Any:
-    _check_format(reader, raw, FORMAT)
-    reader.note(reader.numbers.findings if reader.numbers is not None else ())
     packages = raw.get("packages")
-    if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
-        return reader.note(missing)  # their kinds are unknown, and so other errors are irrelevant
-    try:
-        raw = _with_likes(reader, raw, catalogue_of(raw.get(CATALOGUE), files.where))
-    except DesignError as error:
-        return reader.note(error.findings)
+    if isinstance(packages, list):  # kinds of missing packages are unknown, and so other errors are irrelevant
+        require(package_findings(each for each in packages if isinstance(each, str)))
+    raw = _with_likes(reader, raw, catalogue_of(raw.get(CATALOGUE), files.where))
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES, CATALOGUE)}
     if isinstance(raw.get("requirements"), dict):
         try:
@@ -170,12 +170,8 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
         return BAD
-    if faults := tuple(copy_findings(mechanism)):
-        return reader.note(faults)
-    try:
-        mechanism = mount_all(mechanism, files.carried(reader, raw[STAGES]) if STAGES in raw else {})
-    except DesignError as error:
-        return reader.note(error.findings)
+    require(copy_findings(mechanism))
+    mechanism = mount_all(mechanism, files.carried(reader, raw[STAGES]) if STAGES in raw else {})
     overrides = raw.get("overrides", {})
     formulas = {canonical(mechanism, where): text for where, text in reader.formulas.items()}
     reader.formulas.clear()
