@@ -163,7 +163,8 @@ def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Arra
     column = ENDS
     for axis, count in enumerate(inner):
         flexible = beam.flexibility[..., 3 + axis]
-        for degree, shape, size in _inner(beam, flexible, range(1 if axis == 0 else 2, count + (1 if axis == 0 else 2))):
+        first = 1 if axis == 0 else 2
+        for degree, shape, size in _inner(beam, flexible, range(first, first + count)):
             odd = degree % 2 == 1
             turn[..., axis, column], bend[..., axis, column] = (
                 _integral(beam, flexible * shape, odd=odd),

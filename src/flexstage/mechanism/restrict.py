@@ -78,10 +78,9 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     used = {name: mechanism.units[name] for name in ancestry(mechanism, units[copy])}
     others = {*mechanism.units, *units} - {copy, *used}
     links = {} if guide is None else {"guide": Link((GROUND, PLATFORM), "guide", joint.centre, guide)}
-    parts = dict(mechanism.parts) if guide is None else {**mechanism.parts, "guide": Joint((Freedom.X,))}
     return replace(
         mechanism,
-        parts=parts,
+        parts={**mechanism.parts, **{name: Joint((Freedom.X,)) for name in links}},
         bodies={PLATFORM: Body(reference=joint.centre)},
         links=links,
         units={**used, units[copy]: replace(used[units[copy]], bodies=own)},

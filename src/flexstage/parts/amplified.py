@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, ClassVar, Self, TypeAlias
+from typing import Annotated, ClassVar, Self, TypeAlias
 
 import numpy as np
 
@@ -75,8 +75,9 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def mirrored(self) -> Self:
-        """Mirror image in the x-z plane: couplings, products of inertia and deformations that are odd in y change sign."""
-        return replace(self, **dict(_reversed(self)))  # pyright: ignore[reportArgumentType] (its kinds are dataclasses)
+        """Mirror image in the x-z plane: couplings that are odd in y change sign."""
+        stated = {name: rows for name in ("matrix", "compliance") if (rows := getattr(self, name)) is not None}
+        return replace(self, **{name: mirror_rows(rows) for name, rows in stated.items()})  # type: ignore[type-var]
 
     @property
     def blocking_force(self) -> Number:
@@ -99,19 +100,6 @@ class BetweenFaces(StrokeActuator):
             return
         if stated[0] != "diagonal":
             yield from definite_findings(stated[0], stack(getattr(self, stated[0])))
-
-
-def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
-    """Fields that a mirror image in the x-z plane changes."""
-    for name, value in ((name, getattr(part, name, None)) for name in ("matrix", "compliance", "deformation", "inertia")):
-        if value is None:
-            continue
-        if name == "inertia":
-            yield name, value.mirrored
-        elif name == "deformation":
-            yield name, tuple(sign * each for sign, each in zip((1.0, -1.0, 1.0, -1.0, 1.0, -1.0), value, strict=True))
-        else:
-            yield name, mirror_rows(value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +134,13 @@ class Amplified(BetweenFaces, ChargedActuator):
     capacitance: Annotated[Number, CAPACITANCE, POSITIVE] | None = None
     loss_factor: Annotated[Number, RATIO, NOT_NEGATIVE] | None = None
     source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def mirrored(self) -> Self:
+        """Mirror image in the x-z plane: also products of inertia and deformations that are odd in y change sign."""
+        signs = (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)
+        deformation = self.deformation and tuple(sign * each for sign, each in zip(signs, self.deformation, strict=True))
+        return replace(super().mirrored, deformation=deformation, inertia=self.inertia and self.inertia.mirrored)
 
     @property
     def free_deformation(self) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, ClassVar
 
@@ -11,7 +11,7 @@ from flexstage.base.number import Number
 from flexstage.base.units.quantity import CURVATURE, LENGTH, POSITIVE, TEMPERATURE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.section import Rectangle
-from flexstage.parts.shape import INNER_MODES, Order, Shaped, reversed_or_none
+from flexstage.parts.shape import INNER_MODES, Order, Shaped
 
 
 class LeafSection(Enum):
@@ -52,22 +52,6 @@ class Leaf(Shaped):
     ends: LeafEnds = LeafEnds.CLAMPED
     curvature: Annotated[Number, CURVATURE] | None = None
     face_temperature_difference: Annotated[Number, TEMPERATURE] | None = None
-
-    @property
-    def mirrored(self) -> Leaf:
-        """The leaf with curvature and temperature difference reversed."""
-        warmer = reversed_or_none(self.face_temperature_difference)
-        return replace(self, curvature=reversed_or_none(self.curvature), face_temperature_difference=warmer) if self.is_bent else self
-
-    @property
-    def is_bent(self) -> bool:
-        """Whether the leaf is curved when free."""
-        return self.curvature is not None or self.face_temperature_difference is not None
-
-    @property
-    def straight(self) -> Leaf:
-        """The same leaf, straight when free."""
-        return replace(self, curvature=None, face_temperature_difference=None)
 
     @property
     def warps(self) -> bool:

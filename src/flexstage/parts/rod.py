@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
 from flexstage.base.units.quantity import CURVATURE, LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom, others
 from flexstage.parts.section import Circle, circle
-from flexstage.parts.shape import INNER_MODES, Shaped, reversed_or_none
+from flexstage.parts.shape import INNER_MODES, Shaped
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,21 +27,6 @@ class Rod(Shaped):
     diameter: Annotated[Number, LENGTH, POSITIVE]
     inner_modes: Annotated[int, INNER_MODES] = 0
     curvature: Annotated[Number, CURVATURE] | None = None
-
-    @property
-    def mirrored(self) -> Rod:
-        """The rod with reversed curvature."""
-        return replace(self, curvature=reversed_or_none(self.curvature)) if self.is_bent else self
-
-    @property
-    def is_bent(self) -> bool:
-        """Whether the rod is curved when free."""
-        return self.curvature is not None
-
-    @property
-    def straight(self) -> Rod:
-        """The same rod, straight when free."""
-        return replace(self, curvature=None)
 
     @property
     def intended(self) -> tuple[Freedom, ...]:

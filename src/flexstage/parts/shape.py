@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import reduce
 from itertools import pairwise
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -106,11 +106,6 @@ class Elastic(Description):
         yield from ()
 
 
-def reversed_or_none(value: Number | None) -> Number | None:
-    """Return the negative of a value (for a mirror image), or `None` for an unspecified value."""
-    return None if value is None else -value
-
-
 class Shaped(Elastic):
     """Part with a shape: x axis along the part, origin at its centre, symmetric about the three coordinate planes.
 
@@ -132,9 +127,25 @@ class Shaped(Elastic):
         return {Freedom.RY, Freedom.RZ} <= set(self.intended)
 
     @property
+    def bent(self) -> dict[str, Number]:
+        """Specified curvature about z and temperature difference of the faces, by field; empty if the free part is straight."""
+        own = {name: getattr(self, name, None) for name in ("curvature", "face_temperature_difference")}
+        return {name: value for name, value in own.items() if value is not None}
+
+    @property
+    def is_bent(self) -> bool:
+        """Whether the part is curved when free."""
+        return bool(self.bent)
+
+    @property
+    def straight(self) -> Self:
+        """The same part, straight when free."""
+        return replace(self, **dict.fromkeys(self.bent))  # type: ignore[type-var]
+
+    @property
     def mirrored(self) -> Elastic | None:
-        """The part itself, by symmetry."""
-        return self
+        """The part with the opposite curvature; without curvature, the part itself, by symmetry."""
+        return replace(self, **{name: -value for name, value in self.bent.items()}) if self.is_bent else self  # type: ignore[type-var]
 
     @property
     def span(self) -> Number:

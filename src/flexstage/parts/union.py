@@ -17,6 +17,7 @@ from itertools import combinations, product
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
@@ -66,7 +67,7 @@ class Moments:
     def __add__(self, other: Moments) -> Moments:
         return Moments(self.volume + other.volume, self.first + other.first, self.second + other.second)
 
-    def times(self, weight: Number) -> Moments:
+    def times(self, weight: ArrayLike) -> Moments:
         """Return the moments multiplied by a factor."""
         weight = np.asarray(weight)
         return Moments(weight * self.volume, weight[..., None] * self.first, weight[..., None, None] * self.second)

@@ -85,9 +85,7 @@ def layout(assembly: Assembly, inner: Mapping[str, int] | None = None, *, sparse
     >>> layout(expand(double_triangle())).coordinates[:2]
     ('platform.x', 'platform.y')
     """
-    names = tuple(assembly.bodies)
-    first = tuple(name for name in names if name == "platform")
-    return Layout(first + tuple(name for name in names if name != "platform"), Table(inner or {}), sparse)
+    return Layout(tuple(sorted(assembly.bodies, key=lambda name: name != PLATFORM)), Table(inner or {}), sparse)
 
 
 def is_single(assembly: Assembly) -> bool:

@@ -118,8 +118,8 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
         for freedom in set(part.elastic) & set(part.free):
             yield Finding(where, f"degree of freedom {freedom.value} both elastic and free", "List it once")
         return
-    yield from _orders(where, part.orders if isinstance(part, Elastic) else ())
     if isinstance(part, Elastic):
+        yield from _orders(where, part.orders)
         yield from (replace(fault, where=join(where, fault.where) if fault.where else where) for fault in part.faults)
     if isinstance(part, ComplianceMatrix) and part.inertia is not None:
         yield from _inertia(f"{where}.inertia", part.inertia)

@@ -516,13 +516,8 @@ def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> I
         side = float(np.max(np.ptp(points, axis=0)))
         beside = min(distance(frame.position[None], piece.points) for thing in things for piece in thing.pieces)
         if beside > _BRACKET * side:
-            yield _off_target(name, seen.body, beside, _miss(frame, things, beside + 2.0 * side))
-
-
-def _miss(frame: Frame, things: Sequence[_Thing], reach: float) -> float:
-    """Distance of a gauge's axis from an outline."""
-    axis = frame.position + reach * np.outer([-1.0, 1.0], frame.rotation[:, 0])
-    return min(distance(axis, piece.points) for thing in things for piece in thing.pieces)
+            axis = frame.position + (beside + 2.0 * side) * np.outer([-1.0, 1.0], frame.rotation[:, 0])
+            yield _off_target(name, seen.body, beside, min(distance(axis, piece.points) for thing in things for piece in thing.pieces))
 
 
 def _off_target(name: str, body: str, beside: float, miss: float) -> Finding:

@@ -97,7 +97,7 @@ def _stand_in(document: Any, name: str, part: ReplacementPart, tag: str) -> None
     table = tomlkit.table()
     values = plain(node, part.given, f"parts.{name}")
     for key, value in values.items():
-        table[key] = _lines(value) if key == "compliance" else value
+        table[key] = tomlkit.item(value).multiline(multiline=True) if key == "compliance" else value  # one line per row
     table[TAGS] = tomlkit.inline_table()
     table[TAGS].update({"compliance": tag})
     document["parts"][name] = table
@@ -105,14 +105,6 @@ def _stand_in(document: Any, name: str, part: ReplacementPart, tag: str) -> None
         unit, _, link = address.rpartition("/")
         owner = document["units"][unit] if unit else document
         owner["links"][link.removeprefix("links.")]["part"] = name
-
-
-def _lines(rows: Any) -> Any:
-    """A matrix with one line per row."""
-    array = tomlkit.array()
-    for row in rows:
-        array.append(row)
-    return array.multiline(multiline=True)
 
 
 def _rename_tags(document: Any, old: str, new: str) -> None:
