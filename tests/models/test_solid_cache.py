@@ -72,7 +72,6 @@ def test_keys_are_of_content_and_reduction() -> None:
     assert key_of(short, COARSE) != key_of(long, COARSE)
     assert key_of(short, COARSE) != key_of(short, replace(COARSE, modes=3))
     assert key_of(short, COARSE) != key_of(short, replace(COARSE, fineness=replace(COARSE.fineness, order=3)))
-    assert key_of(short, COARSE) != key_of(short, COARSE, np.eye(6))
 
 
 def test_a_damaged_file_is_told_and_replaced(tmp_path: Path) -> None:

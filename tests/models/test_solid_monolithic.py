@@ -30,7 +30,7 @@ TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
 @pytest.fixture(scope="module")
 def whole():
     stage, parts = read("parallelogram")
-    return parts.model, monolithic(stage, replace(COARSE, modes=18), cache=None)
+    return parts.model, monolithic(stage, replace(COARSE, modes=18))
 
 
 @pytest.mark.full
@@ -38,7 +38,7 @@ def test_props_are_the_same_in_one_mesh():
     """Rods between rigid bodies have nothing to cut: the lowest modes agree to 1e-6, the others to the modes left out."""
     stage = propped(6e-3, 7e-3, 8e-3)
     parts = solid(stage, replace(SMALL, modes=6), cache=None)
-    one = monolithic(stage, replace(SMALL, modes=18), cache=None)
+    one = monolithic(stage, replace(SMALL, modes=18))
     np.testing.assert_allclose(modes(parts).frequencies[:4], modes(one).frequencies[:4], rtol=1e-6)
     np.testing.assert_allclose(modes(parts).frequencies[4:6], modes(one).frequencies[4:6], rtol=1e-4)
 
@@ -63,7 +63,7 @@ def test_platform_modes_of_the_shipped_stage_agree():
     """All six within 0.5 %, from two meshes of order two."""
     stage = case("double-triangle")
     plan = Fineness(order=2)
-    cut, one = solid(stage, Reduction(plan), cache=None), monolithic(stage, Reduction(plan, modes=18), cache=None)
+    cut, one = solid(stage, Reduction(plan), cache=None), monolithic(stage, Reduction(plan, modes=18))
     first, second = (found.frequencies[list(found.platform[:6])] for found in (modes(cut), modes(one)))
     np.testing.assert_allclose(first, second, rtol=0.005)
 

@@ -39,14 +39,14 @@ def gaping() -> Mechanism:
     "reads",
     [
         lambda stage: fs.solid.model(stage, COARSE, cache=None),
-        lambda stage: monolithic(stage, COARSE, cache=None),
+        lambda stage: monolithic(stage, COARSE),
         lambda stage: read_solid(stage, COARSE, solids()),
     ],
     ids=["solid", "monolithic", "read_solid"],
 )
 def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in ("tests.models.monolithic", "flexstage.solid.results.read"):
-        monkeypatch.setattr(f"{module}.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
+    for reduction in ("tests.models.monolithic.mesh_component", "flexstage.solid.results.read.reduce_parts"):
+        monkeypatch.setattr(reduction, lambda *_: pytest.fail("meshed all the same"))
     with pytest.raises(DesignError) as caught:
         reads(gaping())
     assert [finding.where for finding in caught.value.findings] == ["left", "platform"]

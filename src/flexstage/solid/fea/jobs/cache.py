@@ -10,16 +10,13 @@ import functools
 import hashlib
 import os
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import numpy as np
-
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import DesignError, Finding
-from flexstage.base.number import Array
 from flexstage.base.storage.record_store import FORMAT, RecordStore, to_bytes
 from flexstage.base.storage.store import FOLDER_VARIABLE, cache_folder
 from flexstage.base.version import __version__
@@ -88,7 +85,7 @@ def folder_of(cache: Cache) -> Path:
     return cache_folder() if cache.folder is None else cache.folder
 
 
-def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
+def key_of(component: Component, reduction: Reduction) -> str:
     """Return a digest of a superelement's inputs (content of the component, options of reduction), which excludes program versions.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -97,10 +94,7 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
     >>> key_of(part, Reduction()) == key_of(part, Reduction(modes=13))
     False
     """
-    state = hashlib.sha256(f"{content(component)} {reduction}".encode())
-    if springs is not None:
-        state.update(np.ascontiguousarray(springs).tobytes())
-    return state.hexdigest()[:32]
+    return hashlib.sha256(f"{content(component)} {reduction}".encode()).hexdigest()[:32]
 
 
 def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
@@ -151,19 +145,15 @@ def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELE
 
 def _remove_old(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
     """Remove the least recently used files, until there is enough space."""
-    total = float(coming)
-    for _, size, path in sorted(_files(folder, kind.suffix), reverse=True):
+    total, files = float(coming), list[tuple[float, int, Path]]()
+    for path in folder.glob(f"*{kind.suffix}"):
+        with contextlib.suppress(FileNotFoundError):  # another process removed it
+            state = path.stat()
+            files.append((state.st_mtime, state.st_size, path))
+    for _, size, path in sorted(files, reverse=True):
         total += size
         if total > cache.limit:
             path.unlink(missing_ok=True)
-
-
-def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
-    """Last use, size and path of files; another process may remove one meanwhile."""
-    for path in folder.glob(f"*{suffix}"):
-        with contextlib.suppress(FileNotFoundError):
-            state = path.stat()
-            yield state.st_mtime, state.st_size, path
 
 
 def _store(cache: Cache, kind: Kind) -> RecordStore:

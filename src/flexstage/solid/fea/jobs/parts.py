@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import chain
-from types import MappingProxyType
 from typing import Any, TypeAlias, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, require
-from flexstage.base.number import Array
 from flexstage.base.processes.memory import available
 from flexstage.base.processes.progress import Progress, Step, duration
 from flexstage.base.session import SESSION
@@ -32,8 +30,6 @@ Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
 
 AnyStored = TypeVar("AnyStored", bound=StoredJob)
 
-_NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
-
 
 @dataclass(frozen=True)
 class Ways:
@@ -51,13 +47,8 @@ class Ways:
     note: Callable[[str], None] = field(default=lambda _line: None, compare=False)
 
 
-def reduce_parts(
-    parts: Sequence[Component],
-    reduction: Reduction,
-    ways: Ways = Ways(),
-    springs: Mapping[str, Array] = _NO_SPRINGS,
-) -> Parts:
-    """Reduce components. `springs` maps names of components to springs that connect their interfaces.
+def reduce_parts(parts: Sequence[Component], reduction: Reduction, ways: Ways = Ways()) -> Parts:
+    """Reduce components.
 
     Only components missing from the cache need the solver. Each superelement is stored immediately, so that an interrupted computation can
     resume. Raises a `DesignError` that lists all failures.
@@ -65,12 +56,12 @@ def reduce_parts(
     >>> reduce_parts((), Reduction())
     ()
     """
-    jobs = reduce_jobs(parts, reduction, springs)
+    jobs = reduce_jobs(parts, reduction)
     elements = obtain(jobs, ways)
     return as_joined(parts, [(job.component, elements[job.key]) for job in jobs])
 
 
-def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
+def reduce_jobs(parts: Sequence[Component], reduction: Reduction) -> list[Reduce]:
     """Make a job for each component. Ends of links may deform, so that an isolated unit and the unit in its stage have the same job.
 
     An encased stack has no fixed-interface modes: in these modes, the ceramic would bend without its casing, which is connected only to the
@@ -80,12 +71,12 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
     []
     """
     yields = reduction.hold is Hold.RIGID and not reduction.residual
-    wholes = [with_yielding_ends(part) if yields and part.name not in springs else part for part in parts]
     jobs: list[Reduce] = []
-    for part, whole in zip(parts, wholes, strict=True):
-        own, joined = reduction.of(content(whole)), springs.get(part.name)
+    for part in parts:
+        whole = with_yielding_ends(part) if yields else part
+        own = reduction.of(content(whole))
         own = replace(own, modes=0) if all(is_encased(piece.form) for piece in whole.pieces) else own
-        jobs.append(Reduce(key_of(whole, own, joined), whole, own, joined))
+        jobs.append(Reduce(key_of(whole, own), whole, own))
     return jobs
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array
 from flexstage.base.processes.progress import duration
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.shape import Shaped
@@ -92,10 +91,9 @@ class ComponentJob(StoredJob):
 
 @dataclass(frozen=True, eq=False)
 class Reduce(ComponentJob):
-    """Job that reduces a component. If a whole stage is one component, `springs` (6 m, 6 m) connect its m interfaces."""
+    """Job that reduces a component."""
 
     reduction: Reduction
-    springs: Array | None = None
     measured: ReductionWork | None = None
 
     @property
@@ -118,7 +116,7 @@ class Reduce(ComponentJob):
     def _is_plain(self) -> bool:
         """Whether only faces carry it, plane or warping: then the kinds of motions about a symmetry plane follow from the moved faces."""
         part = self.component
-        return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
+        return self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
     def seconds(self) -> float:
         """Return the CPU time [s] of the reduction, estimated from the measured work if it is known, else the usual time of a small job."""
@@ -180,7 +178,7 @@ class Reduce(ComponentJob):
         call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness) / self.sides, self.sides))
         mesh, counts = self.mesh(call)
         call.ask(counts)
-        return reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)
+        return reduce_mesh(self.component, mesh, self.reduction, report=call.report)
 
 
 @dataclass(frozen=True, eq=False)
