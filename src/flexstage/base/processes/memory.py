@@ -53,8 +53,9 @@ def _machine_memory() -> Iterator[float]:
         yield float(psutil.virtual_memory().available)
 
 
-def _control_group(root: Path = Path("/sys/fs/cgroup"), own: Path = Path("/proc/self/cgroup")) -> Iterator[float]:
+def _control_group() -> Iterator[float]:
     """Free memory of the control groups (version 2) of this process, without page cache."""
+    root, own = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
     if not own.is_file():
         return
     paths = [line[3:].strip().lstrip("/") for line in own.read_text(encoding="utf-8").splitlines() if line.startswith("0::")]

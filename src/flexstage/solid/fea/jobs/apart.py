@@ -39,33 +39,29 @@ class _Drawing(Job):
 class _Checking(_Drawing):
     """A stage whose outlines are checked against each other."""
 
-    clearance: float
-
     def work(self, call: Call) -> tuple[Finding, ...]:
         """The findings."""
         call.report(Stage.DRAWING, 0.0)
         from flexstage.solid.fea.geometry.contact import contact_findings
 
-        return contact_findings(self.mechanism, self.clearance)
+        return contact_findings(self.mechanism)
 
 
-def contacts_apart(
-    mechanisms: Sequence[Mechanism], clearance: float = 0.0, limits: Limits = _LIMITS, pool: Pool | None = None
-) -> list[tuple[Finding, ...]]:
+def contacts_apart(mechanisms: Sequence[Mechanism], pool: Pool | None = None) -> list[tuple[Finding, ...]]:
     """Return the results of `contact_findings` for stages, computed in parallel in separate processes or in the processes of a `pool`.
 
     Raises `DesignError` if a process crashes or takes too long.
     """
-    return _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
+    return _results_of([_Checking(mechanism) for mechanism in mechanisms], pool)
 
 
-def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
+def step_apart(mechanism: Mechanism) -> bytes:
     """Compute the result of `step` in a separate process. Raises `DesignError` if the process crashes or takes too long."""
-    return _results_of([_Drawing(mechanism)], limits)[0]
+    return _results_of([_Drawing(mechanism)])[0]
 
 
-def _results_of(jobs: Sequence[_Drawing], limits: Limits, pool: Pool | None = None) -> list[Any]:
+def _results_of(jobs: Sequence[_Drawing], pool: Pool | None = None) -> list[Any]:
     require_installed()
     results: dict[_Drawing, Any] = {}
-    work_all(jobs, results.__setitem__, limits, pool=pool)
+    work_all(jobs, results.__setitem__, _LIMITS, pool=pool)
     return [results[job] for job in jobs]
