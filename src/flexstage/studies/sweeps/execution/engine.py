@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -96,36 +97,25 @@ def engine_of(study: Study) -> Engine:
     >>> dict(engine_of(neck_study()).modes)
     {'tilt': 0}
     """
-    return replace(_engine_of(study), loaded=needs_load_check(study))
-
-
-def _engine_of(study: Study) -> Engine:
     wanted = {name: int(each.name) - 1 for name, each in study.columns.items() if each.kind is platform_frequency}
     modes = Table({name: mode for name, mode in wanted.items() if mode < _MODES})
-    if not modes or not engine_covers(study):
-        return Engine(Table({}))
-    numbers = study.numbers
-    try:
-        return Engine(modes, plan_family(_family(study, numbers), ranges=_ranges(study, numbers)), numbers)
-    except DesignError:
-        return Engine(Table({}))
+    numbers, loaded = study.numbers, needs_load_check(study)
+    if modes and engine_covers(study):
+        with suppress(DesignError):
+            return Engine(modes, plan_family(_family(study, numbers), ranges=_ranges(study, numbers)), numbers, loaded)
+    return Engine(Table({}), loaded=loaded)
 
 
 def _family(study: Study, numbers: Numbers | None) -> Family:
     if numbers is not None:
         return family(study.design, numbers.addresses)
-    return drawn_family(study.mechanism_at, tuple(each.name for each in study.variables), _nominal(study))
+    nominal = np.clip([each.nominal(study.design) for each in study.variables], *_ends(study))
+    return drawn_family(study.mechanism_at, tuple(each.name for each in study.variables), nominal)
 
 
 def _ends(study: Study) -> Array:
     """Smallest and largest values (2, d) of the variables."""
     return np.array([[each.low, each.high] for each in study.variables]).T
-
-
-def _nominal(study: Study) -> Array:
-    """Values (d,) of the nominal design, limited to the ranges."""
-    low, high = _ends(study)
-    return np.clip([each.nominal(study.design) for each in study.variables], low, high)
 
 
 def _ranges(study: Study, numbers: Numbers | None) -> tuple[Array, Array] | None:

@@ -78,14 +78,19 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
     size = piece_size(study)
     _require_ready(target, study, size, how)
     nominal(study)
-    folder = folder_of(target)
+    folder, designs = folder_of(target), study.plan.designs
+
+    def report(pieces: int) -> None:
+        if progress is not None:
+            progress(min(size * pieces, designs), designs)
+
     with _locked(folder):
         done = gather(target, study, size)
-        ranges = [(start, min(start + size, study.plan.designs)) for start in (np.flatnonzero(~done) * size).tolist()]
-        _report_progress(progress, study, size * int(np.sum(done)))
+        ranges = [(start, min(start + size, designs)) for start in (np.flatnonzero(~done) * size).tolist()]
+        report(int(np.sum(done)))
         try:
             for count, _ in enumerate(_pieces(study, ranges, folder, how.workers or cores()), 1 + int(np.sum(done))):
-                _report_progress(progress, study, size * count)
+                report(count)
         finally:
             gather(target, study, size)
     return read_results(target)
@@ -118,11 +123,6 @@ def require_memory(study: Study) -> None:
     )
 
 
-def _report_progress(progress: Progress | None, study: Study, count: int) -> None:
-    if progress is not None:
-        progress(min(count, study.plan.designs), study.plan.designs)
-
-
 def _require_ready(target: Path, study: Study, size: int, how: Run) -> None:
     """Refuse a run that cannot start."""
     require(name_findings(study))
@@ -139,11 +139,11 @@ def _require_ready(target: Path, study: Study, size: int, how: Run) -> None:
     require_room(target, study)
 
 
-def _pieces(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[int]:
-    """Compute all ranges of designs into the folder, in processes of one engine; yields the first design of each completed range."""
+def _pieces(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[object]:
+    """Compute all ranges of designs into the folder, in processes of one engine; yields once for each completed range."""
     try:
-        for (start, _), _ in results(partial(_keep_piece, study, engine_of(study), folder), ranges, workers) if ranges else ():
-            yield start
+        if ranges:
+            yield from results(partial(_keep_piece, study, engine_of(study), folder), ranges, workers)
     except CallError as failed:
         start, stop = failed.arguments
         what, advice = ("processes crashed repeatedly", "Free memory and resume")

@@ -149,8 +149,7 @@ def pending_pieces(path: Path) -> dict[int, Path]:
     >>> pending_pieces(Path("nowhere/results.h5"))
     {}
     """
-    folder = folder_of(path)
-    return {int(each.stem): each for each in sorted(folder.glob(f"[0-9]*{_PIECE}"))} if folder.is_dir() else {}
+    return {int(each.stem): each for each in sorted(folder_of(path).glob(f"[0-9]*{_PIECE}"))}
 
 
 def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], tuple[tuple[str, ...], tuple[str, ...]]]:
