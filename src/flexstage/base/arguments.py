@@ -78,13 +78,10 @@ class CheckedFields:
     def __post_init__(self) -> None:
         own = self.__dict__
         for name, rule in _field_rules(type(self)):
-            value = own[name]
             try:
-                converted = rule(value)
+                own[name] = rule(own[name])
             except MismatchError as error:
                 raise error.refusal(f"{type(self).__name__}.{name}") from None
-            if converted is not value:
-                own[name] = converted
 
 
 def check_arguments(function: Callable[P, T]) -> Callable[P, T]:

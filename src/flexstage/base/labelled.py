@@ -86,15 +86,17 @@ class Matrix(InNotebook):
     @property
     def unit_places(self) -> tuple[list[str], list[str], list[list[str]]]:
         """Units for column heads, row heads and entries. A unit common to a whole column or row is only in the head."""
-        across, down = len(self.columns), len(self.rows)
-        blank = [[""] * across] * down
+        columns, rows = [""] * len(self.columns), [""] * len(self.rows)
+        cells = [columns] * len(rows)
         if isinstance(self.unit, str):
-            return [self.unit] * across, [""] * down, blank
-        if all(line == self.unit[0] for line in self.unit):
-            return list(self.unit[0] if self.unit else [""] * across), [""] * down, blank
-        if all(len(set(line)) <= 1 for line in self.unit):
-            return [""] * across, [line[0] if line else "" for line in self.unit], blank
-        return [""] * across, [""] * down, [list(line) for line in self.unit]
+            columns = [self.unit] * len(columns)
+        elif len(set(self.unit)) <= 1:
+            columns = list(self.unit[0]) if self.unit else columns
+        elif all(len(set(line)) == 1 for line in self.unit):
+            rows = [line[0] for line in self.unit]
+        else:
+            cells = [list(line) for line in self.unit]
+        return columns, rows, cells
 
 
 def _with(text: str, unit: str, form: str = "{} [{}]") -> str:
