@@ -28,6 +28,10 @@ class CallError(Exception):
     error: Exception | None
 
 
+class TimeLimitError(Exception):
+    """Error for a call that exceeds a time limit [s], its argument."""
+
+
 def results(function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], workers: int) -> Iterator[tuple[tuple[Any, ...], Any]]:
     """Yield (arguments, result) of each call of `function(line, *arguments)` in order of completion, from `workers` processes.
 
@@ -150,7 +154,7 @@ class PoolRun:
         """End the calls that exceed their time; grant requested memory, and decline it if it is too much for a call alone."""
         for each in tuple(self.running):
             if (limit := self.time_limit(each)) is not None:
-                self._drop(each, TimeoutError(limit))
+                self._drop(each, TimeLimitError(limit))
         for each in self.running:
             if each.requested is None:
                 continue

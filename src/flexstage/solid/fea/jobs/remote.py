@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.processes.jobs import cores
 from flexstage.base.processes.memory import available
-from flexstage.base.processes.pool import PoolRun, ProcessPool, RunningCall
+from flexstage.base.processes.pool import PoolRun, ProcessPool, RunningCall, TimeLimitError
 from flexstage.base.processes.progress import Progress, Step, seconds_left
 from flexstage.solid.fea.jobs.progress import Stage, fraction_done
 from flexstage.solid.fea.jobs.worker import Job, work
@@ -104,13 +104,15 @@ class _Run(PoolRun):
         try:
             self.launch(call, attempt, begun, (call, attempt, memory, self.seconds), call.kin)
         except OSError as error:
-            raise _refuse_start(call.name, error) from error
+            what = f"no process could be started for it in {tempfile.gettempdir()} ({error.strerror})"
+            advice = "Check that Python starts, and that the folder for temporary files (environment variable TMPDIR) has space"
+            raise refuse(call.name, what, advice) from error
 
     def lost(self, running: RunningCall, cause: Exception | int) -> None:
         """Attempt a mesh again after a crash or a timeout of one, else keep the errors of the job."""
         stage, fraction = _stage(running)
         attempt = round(fraction * running.call.attempts) + 1
-        repeatable = isinstance(cause, TimeoutError) or (isinstance(cause, int) and cause != 1)
+        repeatable = isinstance(cause, TimeLimitError) or (isinstance(cause, int) and cause != 1)
         in_time = super().time_limit(running) is None
         if repeatable and in_time and stage is Stage.MESHING and attempt < running.call.attempts:
             self.again(running, attempt)
@@ -147,7 +149,7 @@ def _failure_findings(running: RunningCall, cause: Exception | int) -> tuple[Fin
     match cause:
         case DesignError():
             return cause.findings
-        case TimeoutError():
+        case TimeLimitError():
             what = f"it was still {doing} after the {cause.args[0]:.4g} s allowed"
             advice = "Use larger elements or a lower order, allow more time, or remove slivers, which can block the mesher"
         case MemoryError():
@@ -176,9 +178,3 @@ def _crash_advice(running: RunningCall, code: int) -> str:
 def _reason(code: int) -> str:
     names = {-number.value: number.name for number in signal.Signals}
     return names.get(code, f"exit code {code}")
-
-
-def _refuse_start(name: str, error: OSError) -> Exception:
-    where = tempfile.gettempdir()
-    advice = "Check that Python starts, and that the folder for temporary files (environment variable TMPDIR) has space"
-    return refuse(name, f"no process could be started for it in {where} ({error.strerror})", advice)
