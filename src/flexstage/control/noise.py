@@ -124,7 +124,7 @@ def noise_budget(
     require_stable(closed, "rms values")
     if closed.step is None:
         raise refuse("loop", "a noise budget needs a sampled loop, but the loop is continuous", "Specify the sampling rate")
-    require([*spectrum_findings(floor, band), *_findings(floor)] if floor else _findings(floor))
+    require([*spectrum_findings(floor, band), *_findings(floor)] if floor else [])
     outputs = tuple(f"relative.{name}" for name in COMPONENTS) if outputs is None else outputs
     gauges = closed.plant.gauges
     seen, count = (*outputs, *(name for name in gauges if name not in outputs)), len(outputs)
@@ -138,7 +138,8 @@ def noise_budget(
     gains = every[:, :count]
     densities = np.stack([spectrum.at(nodes) for spectrum in spectra.values()], axis=-1) if spectra else np.zeros((len(nodes), 0))
     shares = np.einsum("f,fpm,fm->pm", weights, gains, densities)
-    driven = np.einsum("f,fgm,fm->g", weights, every[:, [seen.index(name) for name in gauges]], _differences(closed, nodes) * densities)
+    differences = 4.0 * np.sin(np.pi * nodes * closed.step)[:, None] ** 2  # |e^{j omega T} - 1|^2, for successive samples
+    driven = np.einsum("f,fgm,fm->g", weights, every[:, [seen.index(name) for name in gauges]], differences * densities)
     changes = _changes(closed, readings, sources, driven)
     budget = NoiseBudget(
         outputs=white.outputs,
@@ -152,11 +153,6 @@ def noise_budget(
         notes=(),
     )
     return replace(budget, notes=tuple(_notes(closed, outputs, budget)))
-
-
-def _differences(closed: Loop, frequencies: Array) -> Array:
-    """Factor |e^{j omega T} - 1|^2 (f, 1) of a square in the difference of successive samples."""
-    return 4.0 * np.sin(np.pi * frequencies * (closed.step or 0.0))[:, None] ** 2
 
 
 def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven: Array) -> Array:

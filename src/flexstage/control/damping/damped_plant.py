@@ -146,7 +146,8 @@ def _forces(given: Plant, legs: tuple[Leg, ...]) -> System:
 
 def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains: Array) -> Array:
     """Compute the root locus of the plant's modes (columns): their poles [1/s], tracked for increasing `gains` (rows)."""
-    modes, found = _modal_poles(given), []
+    turning, ratios, found = 2.0 * np.pi * given.frequencies, given.ratios, []
+    modes = turning * (-ratios + 1j * np.sqrt(1.0 - ratios**2))
     for gain in gains:
         poles = close_damping(given, replace(law, gain=float(gain)), legs).system.poles
         poles = poles[np.imag(poles) >= -1e-9 * np.abs(poles)]
@@ -154,11 +155,6 @@ def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains:
         modes = poles[scipy.optimize.linear_sum_assignment(distance)[1]] if len(poles) >= len(modes) else poles[np.argmin(distance, axis=1)]
         found.append(modes)
     return np.array(found)
-
-
-def _modal_poles(given: Plant) -> Array:
-    turning, ratios = 2.0 * np.pi * given.frequencies, given.ratios
-    return turning * (-ratios + 1j * np.sqrt(1.0 - ratios**2))
 
 
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:

@@ -189,7 +189,7 @@ def compare_controllers(
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)
-    one = partial(_rival_of, mechanism, there, solid, test)
+    one = partial(_rival_of, partial(loop_study, mechanism, there=there, solid=solid, test=test))
     came: dict[str, _Came] = {}
     said = tell or (lambda _, __: None)
     said(f"tuning {', '.join(rivals)}", 0.0)
@@ -225,18 +225,10 @@ def _every(
         raise refuse(f"controller {failed.arguments[0]}", what, "Free memory, and run the command again") from None
 
 
-def _rival_of(
-    mechanism: Mechanism,
-    there: OperatingPoint | None,
-    solid: FeaModes | None,
-    test: Identification | None,
-    _line: Line | None,
-    _name: str,
-    asked: LoopSetup,
-) -> _Came:
+def _rival_of(study: Callable[[LoopSetup], LoopStudy], _line: Line | None, _name: str, asked: LoopSetup) -> _Came:
     """Result of a kind, or the findings of its failure."""
     try:
-        return rival(loop_study(mechanism, asked, there=there, solid=solid, test=test))
+        return rival(study(asked))
     except DesignError as error:
         return tuple(error.findings)
 

@@ -51,7 +51,9 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
     >>> round(found.ideal_map.error.at("z", "z").item(), 3), found.lost_motion_gains.largest < 1e-9
     (0.032, True)
     """
-    kinematics, load, (other, model) = given.kinematics, _load(given), _other_gains(given)
+    kinematics, (other, model) = given.kinematics, _other_gains(given)
+    # strokes at an operating point are relative to its deflection
+    load = np.zeros(6) if given.displaced else np.real(first_design(deflection(given.mechanism, given.model).total, 1))
     carrying = lost_motion_compensation(lost, kinematics, load)
     error = partial(static_error, kinematics=kinematics, plant=lost.gain, deflection=load)
     return RestErrors(
@@ -63,11 +65,6 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
         load_left=error(carrying).offset,
         load_strokes=carrying.offset,
     )
-
-
-def _load(given: ResolvedSetup) -> Array:
-    """Platform deflection (6,) [m, rad] under permanent load; zero at an operating point, the reference of strokes there."""
-    return np.zeros(6) if given.displaced else np.real(first_design(deflection(given.mechanism, given.model).total, 1))
 
 
 def _other_gains(given: ResolvedSetup) -> tuple[LostMotion | None, Model]:

@@ -217,7 +217,10 @@ def runs(given: ResolvedSetup, control: Control, closed: Loop, stacks: Stacks | 
     loop = given.plant.coordinates
     asked = courses(given.setup.trajectory, loop)
     rest = rest_time(closed, ringing=Compensation.REFERENCE in given.setup.compensate)
-    sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _simulated_time(each, rest)) for each in asked]
+    sampled = []
+    for each in asked:
+        still = rest if each.is_step else min(rest, 0.2 * each.duration)
+        sampled.append(sampled_course(each, loop, given.step, given.setup.seconds or each.duration + still))
     units = tuple(each.unit for each in loop.commands())
     gains = Matrix(control.gains, loop.actuators, loop.names, ratio_units(units, loop.units))
     computed = driven_machine(given, control, stacks)
@@ -353,11 +356,6 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
     reach = scipy.special.stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
     low, high = np.sqrt(np.maximum(mean - reach, 0.0)), np.sqrt(mean + reach)
     return RestRms(np.sqrt(mean), low, high, _REPEATED, count * given.step)
-
-
-def _simulated_time(course: NamedTrajectory, rest: float) -> float:
-    """Trajectory, plus rest: for a step its settling, for others at most a fifth."""
-    return course.duration + (rest if course.is_step else min(rest, 0.2 * course.duration))
 
 
 def _range_warnings(course: NamedTrajectory, found: Simulated, computed: Machine) -> Iterator[Finding]:

@@ -279,15 +279,21 @@ class HystereticStacks(CheckedFields):
     creep: Annotated[float, RATIO, _CREEP] | None = None
 
 
+class MotionSetup(CheckedFields):
+    """Trajectory of a set-up file; `TOLD_BY` is the key and the word that select its kind."""
+
+    TOLD_BY: ClassVar[tuple[str, str]]
+
+
 @dataclass(frozen=True)
-class StepMotion(CheckedFields):
+class StepMotion(MotionSetup):
     """Steps of the specified coordinates, one after the other. Default: steps of all coordinates of the stage, by 1 um or 10 urad.
 
     `speed`, `acceleration` and `jerk` together replace the step by a motion profile within these limits. In the limits of a rotation, 1 m
     is used for 1 rad.
     """
 
-    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
+    TOLD_BY = ("kind", "step")
 
     amplitude: AxisAmplitudes = field(default_factory=AxisAmplitudes)
     speed: Speed | None = None
@@ -296,14 +302,14 @@ class StepMotion(CheckedFields):
 
 
 @dataclass(frozen=True)
-class RasterMotion(CheckedFields):
+class RasterMotion(MotionSetup):
     """Raster scan: number of `lines`, their `length` and spacing `pitch`, constant `speed` on the lines, and `acceleration` in reversals.
 
     The lines are along the axis `fast`, the pitch along `slow`. For rotations, 1 m is used for 1 rad: a length of 20 um along rx is a
     rotation of 20 urad.
     """
 
-    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "raster")
+    TOLD_BY = ("kind", "raster")
 
     length: Length = 10e-6
     pitch: Length = 1e-6
@@ -315,13 +321,13 @@ class RasterMotion(CheckedFields):
 
 
 @dataclass(frozen=True)
-class SpiralMotion(CheckedFields):
+class SpiralMotion(MotionSetup):
     """Spiral from the centre to `radius`, turns a `pitch` apart, at constant `speed`, in the plane of `first` and `second`.
 
     If `first` or `second` is a rotation, 1 m is used for 1 rad.
     """
 
-    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "spiral")
+    TOLD_BY = ("kind", "spiral")
 
     radius: Length = 5e-6
     pitch: Length = 1e-6
@@ -331,13 +337,13 @@ class SpiralMotion(CheckedFields):
 
 
 @dataclass(frozen=True)
-class SineMotion(CheckedFields):
+class SineMotion(MotionSetup):
     """Simultaneous sines of all specified coordinates at `frequency`, for a number of `periods`.
 
     By default, only the stage's first coordinate moves, with an amplitude of 1 um (10 urad for a rotation).
     """
 
-    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "sine")
+    TOLD_BY = ("kind", "sine")
 
     frequency: Frequency = 5.0
     periods: Ratio = 3.0
@@ -345,10 +351,10 @@ class SineMotion(CheckedFields):
 
 
 @dataclass(frozen=True)
-class FileMotion(CheckedFields):
+class FileMotion(MotionSetup):
     """Trajectory in a CSV `file`: a first column `time [s]`, then coordinates with units, such as `x [um]` and `rz [urad]`."""
 
-    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "file")
+    TOLD_BY = ("kind", "file")
 
     file: str
 

@@ -154,7 +154,8 @@ class BandwidthTrial:
             slack = -float(np.abs(each.response[0])) if calm else 0.0
             score = (max(calm, each.nominal), slack)
             if score < lowest and len(self.seen.offsets) > 1:
-                score = (max(score[0], self._everywhere(each.response, loop)), slack)
+                worst = _score(self.seen.frequencies, each.response * self.seen.own[:, :, loop], self.frequency)
+                score = (max(score[0], worst), slack)
             if score < lowest:
                 best, lowest = each, score
         return best
@@ -171,10 +172,6 @@ class BandwidthTrial:
             if response is not None:
                 whole = response * filtered
                 yield _Chosen(law, notches, whole, _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency))
-
-    def _everywhere(self, response: Array, loop: int) -> float:
-        """Worst score of a law over all mode shifts."""
-        return _score(self.seen.frequencies, response * self.seen.own[:, :, loop], self.frequency)
 
     def _responses(self, place: Place) -> list[tuple[Law, Array | None]]:
         """Laws with their responses (f,), None if too fast for the sampling; PI and PID at one frequency differ only by a factor."""
@@ -228,13 +225,9 @@ def _sampled_response(law: Law, seen: View) -> Array | None:
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
     """Worst peak of S of a single loop (v, f) over all mode shifts; the crossover is checked only for the first."""
-    if _crosses_elsewhere(frequencies, np.abs(gains[0]), frequency):
+    if abs(crossing_frequency(frequencies, np.abs(gains[0])) / frequency - 1.0) > _AGREES:
         return 2.0 * _WRONG
     return _WRONG * bool(np.any(_encircles(frequencies, gains))) + float(1.0 / np.min(np.abs(1.0 + gains)))
-
-
-def _crosses_elsewhere(frequencies: Array, gains: Array, frequency: float) -> bool:
-    return abs(crossing_frequency(frequencies, gains) / frequency - 1.0) > _AGREES
 
 
 def _encircles(frequencies: Array, gains: Array) -> Array:

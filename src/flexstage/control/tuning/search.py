@@ -793,15 +793,11 @@ def _highest_stable(within: Field, found: SearchResult) -> SearchResult | None:
     Searched from above: gains beyond a mode may be stable where lower ones are not.
     """
     for scale in _SCALES[::-1]:
-        moved = replace(found, points=tuple(_louder(point, np.log(scale)) for point in found.points))
+        moved = replace(found, points=tuple(point + np.log(scale) * (np.arange(len(point)) == 0) for point in found.points))
         whole = coupled_sensitivities(within.plants, moved, within.frequencies)
         if np.max(np.abs(whole[0])) <= _LOOSE * within.spec.sensitivity and _is_stable(whole) and _coupled_peak(within, whole) <= _LOOSE:
             return moved
     return None
-
-
-def _louder(point: Array, factor: float) -> Array:
-    return point + factor * (np.arange(len(point)) == 0)
 
 
 def _bounds(spec: TuningSpec, frequency: float) -> Bounds:

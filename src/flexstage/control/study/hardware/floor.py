@@ -12,19 +12,7 @@ from flexstage.control.study.setup import Floor, VibrationSetup
 
 _THIRD_OCTAVE = np.log(2.0) / 3.0
 _VELOCITIES = MappingProxyType(
-    {
-        Criterion.WORKSHOP: 800e-6,
-        Criterion.OFFICE: 400e-6,
-        Criterion.RESIDENTIAL: 200e-6,
-        Criterion.THEATRE: 100e-6,
-        Criterion.VC_A: 50e-6,
-        Criterion.VC_B: 25e-6,
-        Criterion.VC_C: 12.5e-6,
-        Criterion.VC_D: 6.25e-6,
-        Criterion.VC_E: 3.12e-6,
-        Criterion.VC_F: 1.56e-6,
-        Criterion.VC_G: 0.78e-6,
-    }
+    dict(zip(Criterion, (800e-6, 400e-6, 200e-6, 100e-6, 50e-6, 25e-6, 12.5e-6, 6.25e-6, 3.12e-6, 1.56e-6, 0.78e-6), strict=True))
 )
 _FROM_ONE_HERTZ = (Criterion.VC_C, Criterion.VC_D, Criterion.VC_E, Criterion.VC_F, Criterion.VC_G)
 _LOWEST, _CORNER, _HIGHEST = 4.0, 8.0, 80.0
