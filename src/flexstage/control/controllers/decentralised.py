@@ -123,14 +123,11 @@ def with_feedforward(control: System, gains: Array | None, coordinates: Coordina
         return control
     wanted = coordinates.motions("reference.")
     place = next((number for number, name in enumerate(control.input_names) if name.startswith("applied.")), len(control.inputs))
-    return System(
-        control.A,
-        np.insert(control.B, [place] * len(wanted), 0.0, axis=1),
-        control.C,
-        np.hstack([control.D[:, :place], np.asarray(gains), control.D[:, place:]]),
-        (*control.inputs[:place], *wanted, *control.inputs[place:]),
-        control.outputs,
-        control.step,
+    return replace(
+        control,
+        B=np.insert(control.B, [place] * len(wanted), 0.0, axis=1),
+        D=np.hstack([control.D[:, :place], np.asarray(gains), control.D[:, place:]]),
+        inputs=(*control.inputs[:place], *wanted, *control.inputs[place:]),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import require
 from flexstage.base.number import Array
@@ -61,12 +62,10 @@ class ForceFeedback:
         >>> bool(np.allclose(found.transfer(np.array([40.0]))[0, 0, 0] * 17e6, law.at(80j * np.pi)))
         True
         """
-        bottom = self.denominator / self.denominator[0]
-        count = len(bottom) - 1
-        top = np.zeros(count)
-        top[count - len(self.numerator) :] = self.numerator / self.denominator[0] / stiffness
-        A = np.vstack([-bottom[1:], np.eye(count)[:-1]])
-        return System(A, np.eye(count)[:, :1], top[None, :], np.zeros((1, 1)), (tension,), (stroke,))
+        A = scipy.linalg.companion(self.denominator)
+        top = np.zeros((1, len(A)))
+        top[0, len(A) - len(self.numerator) :] = self.numerator / self.denominator[0] / stiffness
+        return System(A, np.eye(len(A))[:, :1], top, np.zeros((1, 1)), (tension,), (stroke,))
 
     @property
     def kept_below(self) -> float:

@@ -202,12 +202,8 @@ def _next(found: Repeater, added: Array, error: Array, start: int, stop: int) ->
         return np.zeros((stop - start, added.shape[1]))
     before = np.zeros((max(-first, 0), added.shape[1]))
     past, known = (np.concatenate([before, each[max(first, 0) : last]]) for each in (added, error))
-    kept = np.stack([scipy.signal.fftconvolve(column, found.keep, mode="valid") for column in past.T], axis=-1)
-    taught = [
-        sum(scipy.signal.fftconvolve(known[:, column], found.teach[:, row, column], mode="valid") for column in range(known.shape[1]))
-        for row in range(known.shape[1])
-    ]
-    return kept + np.stack(taught, axis=-1)
+    kept = scipy.signal.fftconvolve(past, found.keep[:, None], mode="valid", axes=0)
+    return kept + np.sum(scipy.signal.fftconvolve(known[:, None, :], found.teach, mode="valid", axes=0), axis=-1)
 
 
 def _repeated(found: Repeater, closed: Loop, error: Array, asked: Repetition, commanded: Array) -> RepetitiveResult:

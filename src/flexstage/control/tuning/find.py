@@ -336,10 +336,9 @@ def _controller(within: Field, found: SearchResult) -> Decentralised:
 
 def prefilters(within: Field, found: SearchResult) -> tuple[Prefilter, ...]:
     """Select a prefilter per loop from a grid: least overshoot for all mode shifts (up to 2 % counts as none), then fastest settling."""
-    loops, chosen = one_loops(within, found), dict[int, Prefilter]()
-    for loop, first in enumerate(within.alike):
-        chosen[loop] = chosen[first] if first in chosen else _soonest(loops[loop])
-    return tuple(chosen.values())
+    loops = one_loops(within, found)
+    chosen = {first: _soonest(loops[first]) for first in {*within.alike}}
+    return tuple(chosen[first] for first in within.alike)
 
 
 def _soonest(loop: OneLoop) -> Prefilter:

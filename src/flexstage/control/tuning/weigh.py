@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy
@@ -88,11 +89,7 @@ def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: flo
     starts from the best point of a grid. The grid extends around the first mode and includes the controller `begun`. If the crossover
     `bandwidth` [Hz] of `begun` is above the modes, the grid has only points around `begun`. The search is deterministic.
     """
-
-    def cost(point: Array) -> float:
-        return _cost(searched, against, point)
-
-    seen = searched.within.seen
+    cost, seen = partial(_cost, searched, against), searched.within.seen
     first = float(seen.modes[0])
     known = list(_grid_around(searched, begun, bandwidth))
     if bandwidth > last_mode(seen):
