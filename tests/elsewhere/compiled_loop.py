@@ -51,10 +51,10 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     >>> bool(np.max(np.abs(found.pose - simulate(known, asked).pose)) < 1e-18)
     True
     """
-    entering = inflow(given, len(reference), disturbances)
+    moved, read, added = inflow(given, len(reference), disturbances)
     felt = tuple(index for index, channel in enumerate(given.disturbances) if channel.name in disturbances)
     program = loop_code(_without_idle_disturbances(given, felt))
-    rows = run_program(program, np.hstack([reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
+    rows = run_program(program, np.hstack([reference, moved[:, felt], read, added]))
     series = _series(program, rows, reference)
     require_finite(given, np.hstack([series.motions, series.command, series.stroke]))
     return simulation_result(given, series)

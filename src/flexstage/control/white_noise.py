@@ -46,8 +46,7 @@ def mean_squares(system: System) -> Array:
     >>> mean_squares(lag).tolist()  # 1/(2 pi) times the integral of 1/(1 + omega^2)
     [[0.5]]
     """
-    A, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
-    B, C = system.B / scale[:, None], system.C * scale
+    A, B, C, _ = system.balanced
     found = system.D**2 if system.step is not None else np.where(system.D == 0.0, 0.0, np.inf)
     for row, output in enumerate(C):
         weight = np.outer(output, output)

@@ -51,6 +51,11 @@ class Coordinates:
         return np.array([1.0 if unit == "m" else self.length for unit in self.units])
 
     @property
+    def gaps(self) -> tuple[str, ...]:
+        """Names of the plant's outputs for the gauges."""
+        return tuple(f"gap.{name}" for name in self.gauges)
+
+    @property
     def forced(self) -> bool:
         """Whether forces drive the stage."""
         return any(unit != "m" for unit in self.input_units)
@@ -63,21 +68,24 @@ class Coordinates:
         >>> coordinates(ideal(parallelogram())).motions("error.")
         (Channel(name='error.x', unit='m'),)
         """
-        return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.names, self.units, strict=True))
+        return _channels(prefix, self.names, self.units)
 
     def readings(self, prefix: str = "") -> tuple[Channel, ...]:
         """Return one channel per gauge, with a name prefix, in its unit."""
-        units = self.gauge_units or ("m",) * len(self.gauges)
-        return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.gauges, units, strict=True))
+        return _channels(prefix, self.gauges, self.gauge_units)
 
     def commands(self, prefix: str = "") -> tuple[Channel, ...]:
         """Return one channel per actuator, with a name prefix, in the unit of its input."""
-        units = self.input_units or ("m",) * len(self.actuators)
-        return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.actuators, units, strict=True))
+        return _channels(prefix, self.actuators, self.input_units)
 
     def controller_inputs(self) -> tuple[Channel, ...]:
         """Return the channels `error.<c>`, `pose.<c>` and `applied.<actuator>`."""
         return (*self.motions("error."), *self.motions("pose."), *self.commands("applied."))
+
+
+def _channels(prefix: str, names: tuple[str, ...], units: tuple[str, ...]) -> tuple[Channel, ...]:
+    """Channels with a name prefix; the default unit is m."""
+    return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(names, units or ("m",) * len(names), strict=True))
 
 
 def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coordinates:
@@ -95,7 +103,9 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
     """
     units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
     scale = np.array([1.0 if unit == "m" else kinematics.first_length for unit in units])
-    require(_mixture(kinematics))
+    if kinematics.actuators and kinematics.thrusts:
+        what = f"both strokes ({', '.join(kinematics.actuators)}) and forces ({', '.join(kinematics.thrusts)}) drive the stage"
+        raise refuse("loop", what, "Use only strokes or only forces: allocation of commands between both is not supported")
     drive = np.real(first_design(kinematics.actuation, 2))
     pushed = np.real(first_design(kinematics.thrust, 2)).T if kinematics.thrusts else drive
     told = _even(kinematics)[:, None] * np.real(first_design(kinematics.seen, 2)) / scale
@@ -105,6 +115,9 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
             *_missing("gauges", told, kinematics, "measure", "Add gauges, or rotate them so that every motion changes a reading"),
         ]
     )
+    pose = np.linalg.pinv(told) * _even(kinematics)  # from all readings, in lengths
+    if kinematics.sums:
+        pose = pose @ np.real(first_design(kinematics.selection, 2))
     back = np.linalg.pinv(drive / scale) / scale[:, None]
     if kinematics.thrusts:
         back = _give(kinematics, model)
@@ -115,19 +128,12 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
         actuators=kinematics.thrusts or kinematics.actuators,
         gauges=kinematics.single_gauges,
         gauge_units=tuple(kinematics.reading_units[kinematics.gauges.index(name)] for name in kinematics.single_gauges),
-        pose=_pose(kinematics, told) / scale[:, None],
+        pose=pose / scale[:, None],
         strokes=drive,
         back=back,
         length=kinematics.first_length,
         input_units=kinematics.thrust_inputs,
     )
-
-
-def _mixture(kinematics: Kinematics) -> list[Finding]:
-    if not kinematics.actuators or not kinematics.thrusts:
-        return []
-    what = f"both strokes ({', '.join(kinematics.actuators)}) and forces ({', '.join(kinematics.thrusts)}) drive the stage"
-    return [Finding("loop", what, "Use only strokes or only forces: allocation of commands between both is not supported")]
 
 
 def _give(kinematics: Kinematics, model: LinearModel | None) -> Array:
@@ -136,7 +142,7 @@ def _give(kinematics: Kinematics, model: LinearModel | None) -> Array:
         raise refuse("loop", "force actuators need an elastic model for the stage's static motion", "Use the lumped model")
     twist = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
     if model.floating is None:
-        gain = np.asarray(static_gain(model, twist, kinematics.thrusts).values)
+        gain = static_gain(model, twist, kinematics.thrusts).values
     else:
         rows, force = model.output[model.output_index(twist)], model.input_matrix[:, model.input_index(kinematics.thrusts)]
         gain = rows @ (model.solve(force) + model.floating @ (model.floating.T @ force) / (2.0 * np.pi * _REFERENCE) ** 2)
@@ -147,12 +153,6 @@ def _even(kinematics: Kinematics) -> Array:
     """Factors (t,) that make readings comparable: 1, and the stage's length for rotations."""
     units = dict(zip(kinematics.gauges, kinematics.reading_units, strict=True))
     return np.array([1.0 if units[name] == "m" else kinematics.first_length for name in kinematics.telling])
-
-
-def _pose(kinematics: Kinematics, told: Array) -> Array:
-    """Map (f, s) from single gauges' readings to coordinates, all lengths; `told` are all comparable readings per coordinate."""
-    pose = np.linalg.pinv(told) * _even(kinematics)
-    return pose @ np.real(first_design(kinematics.selection, 2)) if kinematics.sums else pose
 
 
 def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: str) -> list[Finding]:

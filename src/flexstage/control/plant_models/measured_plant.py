@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -15,7 +14,7 @@ from flexstage.base.units.dimension import dimension_of
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.plant_models.reduction import mode_names
-from flexstage.control.systems.system import System, block_matrices, connect, lag, rename, select
+from flexstage.control.systems.system import System, block_matrices, connect, lag, select
 from flexstage.experiment.identification.diagnosis.lateness import common_delay
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.residues import modal_sum
@@ -29,14 +28,6 @@ _ALIKE, _APART = 0.7, 0.5
 _BESIDE = 0.05
 _LEAST = 0.5
 _BELOW = 1.2
-
-
-@dataclass(frozen=True, eq=False)
-class Pairs:
-    """Pairs of model modes (indices `model`, among the plant's retained modes) and identified modes (indices `found`)."""
-
-    model: Array
-    found: Array
 
 
 def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
@@ -64,7 +55,8 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
     moved = _modal_system(
         found.poles, ahead.shapes[rows] * sizes[0], participation[:, columns] * sizes[1], direct * sizes[0] * sizes[1], given
     )
-    driven = _lagged(moved, given, lags)
+    seen = lag(moved.outputs, lags / (2.0 * np.pi), given.coordinates.readings("measured."))
+    driven = connect([moved, seen], {}, given.coordinates.commands(), seen.output_names)
     hardware = replace(
         given.hardware,
         delay=given.hardware.delay + delay,
@@ -91,24 +83,22 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
     )
 
 
-def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
+def pair_modes(given: Plant, model: LinearModel, found: Identified) -> list[tuple[int, int]]:
     """Pair model modes with identified modes, if their modal assurance (MAC) at the gauges exceeds 0.7.
+
+    Returns the indices of a model mode (among the plant's retained modes) and of an identified mode for each pair.
 
     The two frequencies of a pair differ by less than a factor of e^0.5. Modes with close frequencies mix. An identified shape is therefore
     compared with the space spanned by the model mode and all model modes within 5 % of its frequency.
     """
-    kept = _kept(given)
-    rows = [channel.name for channel in model.outputs]
-    names = given.coordinates.gauges
-    shapes = np.real(model.output[[rows.index(name) for name in names]] @ eigen(model).shapes[:, kept])
-    seen = found.real_shapes[[[channel.name for channel in found.outputs].index(name) for name in names]]
-    assurance = np.array(
-        [[_assurance(seen[:, row], shapes, given.frequencies, column) for column in range(len(kept))] for row in range(seen.shape[1])]
-    ).reshape(seen.shape[1], len(kept))
+    shapes = np.real(model.output[model.output_index(given.coordinates.gauges)] @ eigen(model).shapes[:, _kept(given)])
+    seen = found.real_shapes[channel_places(given.coordinates, found)[0]].T
+    columns = range(len(given.frequencies))
+    assurance = np.array([[_assurance(each, shapes, given.frequencies, column) for column in columns] for each in seen])
+    assurance = assurance.reshape(len(seen), len(columns))
     apart = np.abs(np.log(found.frequencies[:, None] / given.frequencies))
-    solved: Any = scipy.optimize.linear_sum_assignment(1.0 - assurance + apart)
-    good = (assurance[solved] > _ALIKE) & (apart[solved] < _APART)
-    return Pairs(solved[1][good], solved[0][good])
+    solved = zip(*scipy.optimize.linear_sum_assignment(1.0 - assurance + apart), strict=True)
+    return [(mode, other) for other, mode in solved if assurance[other, mode] > _ALIKE and apart[other, mode] < _APART]
 
 
 def _kept(given: Plant) -> list[int]:
@@ -119,21 +109,21 @@ def _kept(given: Plant) -> list[int]:
 def _assurance(seen: Array, shapes: Array, frequencies: Array, column: int) -> float:
     near = np.abs(frequencies / frequencies[column] - 1.0) < _BESIDE
     basis = scipy.linalg.orth(shapes[:, near])
-    return float(np.sum((basis.T @ seen) ** 2) / np.sum(seen**2))
+    return np.sum((basis.T @ seen) ** 2) / np.sum(seen**2)
 
 
-def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[Finding]:
+def _stage_findings(given: Plant, found: Identified, pairs: list[tuple[int, int]]) -> Iterator[Finding]:
     if not len(found.frequencies):
         yield Finding("--record", "no identified mode", "Record longer, or increase the drive: see flexstage identify")
         return
     below = found.frequencies <= _BELOW * given.frequencies[min(len(given.coordinates.names), len(given.frequencies)) - 1]
-    count, alike = int(np.sum(below)), int(np.sum(below[pairs.found]))
+    count, alike = np.sum(below), sum(below[other] for _, other in pairs)
     ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
     theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
     if not count:
         what = f"all identified modes ({theirs} Hz) are above the stage's first modes ({ours} Hz): probably another stage or a short record"
         yield Finding("--record", what, "Record longer or in a lower band, or use the design of the tested stage")
-    elif alike < _LEAST * count or not len(pairs.found):
+    elif alike < _LEAST * count or not pairs:
         what = f"only {alike} of the {count} lowest identified modes ({theirs} Hz) match the stage ({ours} Hz): probably another stage"
         yield Finding("--record", what, "Use the design of the tested stage; check for exchanged channels with flexstage identify --stage")
 
@@ -182,20 +172,13 @@ def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
     return replace(found, shapes=shapes, participation=back, responses=replace(found.responses, values=values), delay=0.0)
 
 
-def _lagged(moved: System, given: Plant, lags: Array) -> System:
-    """Motion as read by the gauges, with their lags."""
-    ahead = rename(moved, {name: f"ahead.{name}" for name in moved.output_names})
-    seen = lag(ahead.outputs, lags / (2.0 * np.pi), moved.outputs)
-    return connect([ahead, seen], {}, given.coordinates.commands(), moved.output_names)
-
-
 def _static_term(found: Identified, participation: Array, delay: float, *, mass_line: bool) -> Array:
     """Residual real constant (p, m) of the responses after the modes, by least squares up to the highest mode.
 
     With the `mass_line`, all lines count, by relative errors: loops on forces cross over above the modes, where the motion is small.
     """
     lines = found.responses.frequencies
-    highest = np.inf if mass_line else float(np.max(found.frequencies))
+    highest = np.inf if mass_line else np.max(found.frequencies)
     chosen = (lines >= found.band[0]) & (lines <= min(found.band[1], highest))
     lines = lines[chosen]
     earlier = np.exp(2j * np.pi * lines * delay)[:, None, None]
@@ -209,30 +192,26 @@ def _static_term(found: Identified, participation: Array, delay: float, *, mass_
 
 def _modal_system(poles: Array, shapes: Array, drives: Array, direct: Array, given: Plant) -> System:
     """Real system of sum phi l/(s - p) + conjugate + D, two states per mode: z' = p z + l u, y = 2 Re(phi z)."""
-    count = len(poles)
-    A = np.zeros((2 * count, 2 * count))
-    B, C = np.zeros((2 * count, drives.shape[1])), np.zeros((len(shapes), 2 * count))
-    for mode, pole in enumerate(poles):
-        own = slice(2 * mode, 2 * mode + 2)
-        A[own, own] = [[pole.real, -pole.imag], [pole.imag, pole.real]]
-        size = np.abs(pole)  # states of the size of the motion, not of its rate over it
-        B[own] = np.stack([np.real(drives[mode]), np.imag(drives[mode])]) / size
-        C[:, own] = 2.0 * size * np.stack([np.real(shapes[:, mode]), -np.imag(shapes[:, mode])], axis=1)
-    return System(A, B, C, direct, given.coordinates.commands(), given.coordinates.readings("measured."))
+    count, sizes = len(poles), np.abs(poles)  # states of the size of the motion, not of its rate over it
+    A = scipy.linalg.block_diag(*([[pole.real, -pole.imag], [pole.imag, pole.real]] for pole in poles))
+    B = np.stack([np.real(drives), np.imag(drives)], axis=1) / sizes[:, None, None]
+    C = 2.0 * sizes[:, None] * np.stack([np.real(shapes), -np.imag(shapes)], axis=-1)
+    inputs, outputs = given.coordinates.commands(), given.coordinates.readings("ahead.")
+    return System(A, B.reshape(2 * count, -1), C.reshape(-1, 2 * count), direct, inputs, outputs)
 
 
-def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
+def _retuned(given: Plant, pairs: list[tuple[int, int]], found: Identified) -> System:
     """Model system with frequency and damping of its modes replaced by the identified ones.
 
     Ground stiffness scales with the squared frequency, ground damping with the rate: the stage still follows slow ground motion.
     """
     A, B = given.system.A.copy(), given.system.B.copy()
     ground = [column for column, name in enumerate(given.system.input_names) if name.startswith(f"{GROUND}.")]
-    for mode, other in zip(pairs.model, pairs.found, strict=True):
+    for mode, other in pairs:
         name = f"mode{_kept(given)[mode] + 1}"
         place, rate = given.states.index(name), given.states.index(f"{name}'")
         omega = 2.0 * np.pi * float(found.frequencies[other])
-        stiffer, damped = -(omega**2) / A[rate, place], -2.0 * float(found.damping[other]) * omega / A[rate, rate]
+        stiffer, damped = -(omega**2) / A[rate, place], -2.0 * found.damping[other] * omega / A[rate, rate]
         pushed = (B[rate, ground] - A[rate, rate] * B[place, ground]) * stiffer
         A[rate, place], A[rate, rate] = A[rate, place] * stiffer, A[rate, rate] * damped
         B[place, ground] *= damped
@@ -242,7 +221,7 @@ def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
 
 def _together(given: Plant, driven: System, rest: System) -> System:
     """Combined outputs: gaps by both; loop coordinates from the gauges for strokes; all other motions by the model."""
-    loop, names, gaps = given.coordinates, rest.output_names, [f"gap.{name}" for name in given.gauges]
+    loop, names, gaps = given.coordinates, rest.output_names, given.coordinates.gaps
     measured = dict(zip(gaps, np.eye(len(gaps)), strict=True))
     measured |= {f"{kind}.{name}": row for kind in ("platform", "relative") for name, row in zip(loop.names, loop.pose, strict=True)}
     inside = [name for name in names if name not in measured]

@@ -16,7 +16,7 @@ from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.plant_models.coordinates import Coordinates, coordinates
 from flexstage.control.plant_models.electronics import Amplifier, Hardware, Sensor
 from flexstage.control.systems.sampling import discretise, first_order_hold
-from flexstage.control.systems.system import System, connect, from_state_space, lag, rename, select, static
+from flexstage.control.systems.system import System, connect, from_state_space, lag, names_of, rename, select, static
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.eigen import eigen
@@ -155,10 +155,10 @@ def zero_order_hold(given: Plant) -> System:
     outputs = given.system.output_names
     driven = discretise(select(given.system, actuators, outputs), step, given.hardware.delay, len(given.gauges))
     moved, loaded = first_order_hold(select(given.system, ground, outputs), step), discretise(select(given.system, others, outputs), step)
-    late = np.zeros((len(driven.A) - len(moved.A), len(ground) + len(others)))
+    entering = np.pad(np.hstack([moved.B, loaded.B]), ((0, len(driven.A) - len(moved.A)), (0, 0)))
     return replace(
         driven,
-        B=np.hstack([driven.B, np.vstack([np.hstack([moved.B, loaded.B]), late])]),
+        B=np.hstack([driven.B, entering]),
         D=np.hstack([driven.D, moved.D, loaded.D]),
         inputs=(*driven.inputs, *moved.inputs, *loaded.inputs),
     )
@@ -192,7 +192,7 @@ def _with_sampling_chain(stage: System, states: tuple[str, ...], loop: Coordinat
     body = rename(stage, {name: f"stroke.{name}" for name in loop.actuators})
     motions = tuple(name for name in stage.output_names if name not in loop.gauges)
     inputs = (*loop.commands(), *others)
-    outputs = (*(f"gap.{name}" for name in loop.gauges), *motions)
+    outputs = (*loop.gaps, *motions)
     names = [*states, *_slow("amplifier", loop.actuators, amplifiers), *_slow("gauge", loop.gauges, lags)]
     names += [f"filter.{name}.{number + 1}" for name, each in zip(loop.gauges, filters, strict=True) for number in range(len(each.A))]
     return connect([body, amplifiers, lags, *filters], {}, inputs, outputs), tuple(names)
@@ -242,13 +242,13 @@ def sensor_filter(given: Plant) -> System:
     0.6708
     """
     chain = _gauge_chain(given.coordinates, given.hardware)
-    whole = connect(chain, {}, given.coordinates.readings(), [f"gap.{name}" for name in given.gauges])
+    whole = connect(chain, {}, given.coordinates.readings(), given.coordinates.gaps)
     old = {name: f"noise.{name}" for name in given.gauges} | {f"gap.{name}": f"filtered.{name}" for name in given.gauges}
     return rename(whole, old)
 
 
 def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tuple[str, ...]) -> Iterator[Finding]:
-    outputs = [channel.name for channel in model.outputs]
+    outputs = names_of(model.outputs)
     both = set(loop.actuators) & set(loop.gauges)
     for name in sorted(both):
         yield Finding(name, "an actuator and a gauge have this name", "Rename the actuator or the gauge")

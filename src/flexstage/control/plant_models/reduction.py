@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import compress
 
 import numpy as np
 
@@ -29,12 +30,12 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
     if np.all(kept):
         return given
     known = mode_names(given)
-    slow = np.array([not name.startswith("mode") or bool(kept[known.index(name.rstrip("'"))]) for name in given.states])
+    slow = np.array([not name.startswith("mode") or kept[known.index(name.rstrip("'"))] for name in given.states])
     count = int(np.sum(kept))
     return replace(
         given,
         system=residualise(given.system, slow),
-        states=tuple(name for name, each in zip(given.states, slow, strict=True) if each),
+        states=tuple(compress(given.states, slow)),
         frequencies=given.frequencies[kept],
         ratios=given.ratios[kept],
         left_out=given.left_out + len(kept) - count,
@@ -54,15 +55,15 @@ def resonances(given: Plant) -> Array:
     """
     loop = given.coordinates
     modal = np.array([name.startswith("mode") for name in given.states])
-    stage = residualise(select(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
-    names = [name for name, each in zip(given.states, modal, strict=True) if each]
+    stage = residualise(select(given.system, given.actuators, loop.gaps), modal)
+    names = [*compress(given.states, modal)]
     sizes = np.zeros(len(given.frequencies))
     for index, (name, frequency, ratio) in enumerate(zip(mode_names(given), given.frequencies, given.ratios, strict=True)):
         place, rate = names.index(name), names.index(f"{name}'")
         shape = loop.scale * (loop.pose @ stage.C[:, place])
         force = (stage.B[rate] @ loop.strokes) / loop.scale
-        damped = 2.0 * max(float(ratio), 1e-6) * (2.0 * np.pi * frequency) ** 2
-        size = float(np.linalg.norm(shape) * np.linalg.norm(force))
+        damped = 2.0 * max(ratio, 1e-6) * (2.0 * np.pi * frequency) ** 2
+        size = np.linalg.norm(shape) * np.linalg.norm(force)
         sizes[index] = size / damped if damped > 0.0 else np.inf
     return sizes
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 from typing import Annotated
 
 import numpy as np
-import scipy
 
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW
@@ -86,17 +86,17 @@ def retention(whole: Plant, closed: Loop) -> Retention:
     wanted = kept.copy()
     wanted[~kept] = chosen
     rest = np.where(chosen, 0.0, left_out.gains)
-    largest = int(np.argmax(rest))
+    largest = np.argmax(rest)
     frequency = None if np.all(chosen) else float(whole.frequencies[~kept][largest])
     return Retention(int(np.sum(kept)), len(names), float(rest[largest]), frequency, change, wanted, retune)
 
 
 @dataclass(frozen=True, eq=False)
 class _Contributions:
-    """Effects of omitted modes (d,) in a loop: `gains` at resonance, `place` (d,) among the frequency lines, and `rings` in a step.
+    """Effects of omitted modes (d,) in a loop: `gains` at resonance, and `rings` in a step.
 
-    `plant` (f, c, n) is the response of the retained part from commands to pose. `poles` belong to the omitted modes, `held` are their
-    sampled responses behind the hold.
+    `plant` (f, c, n) is the response of the retained part from commands to pose. `poles` belong to the omitted modes. `held` (2, f, d) are
+    their sampled responses behind the hold, less the static term, and the conjugates.
     """
 
     lines: LoopLines
@@ -104,34 +104,37 @@ class _Contributions:
     pose: Array
     poles: _Poles
     held: Array
-    place: Array
     gains: Array
     rings: Array
 
     def margins(self, chosen: Array) -> ResponseMargins:
         """Margins including the `chosen` modes."""
-        return self.lines.margins(self.plant + self.poles.response(self.pose, self.held, chosen))
+        outer = (self.poles.pose(self.pose)[:, :, None] * self.poles.entries[:, None, :]).reshape(len(chosen), -1)
+        change = (self.held[0] * chosen) @ outer + (self.held[1] * chosen) @ np.conj(outer)
+        return self.lines.margins(self.plant + change.reshape(self.plant.shape))
 
 
 def _contributions(whole: Plant, kept: Array, closed: Loop) -> _Contributions:
     poles, loop, hardware = _left_out(whole, kept), closed.plant.coordinates, whole.hardware
-    own = np.abs(_folded(np.imag(poles.values) / (2.0 * np.pi), hardware.step))
+    own, step = np.abs(np.imag(poles.values)) / (2.0 * np.pi), hardware.step
+    own = own if step is None else np.abs(own - np.round(own * step) / step)  # aliases after sampling
     lines = _lines(closed, poles.values)
     lines = np.unique(np.concatenate([lines, own[own > lines[0]]]))
     place = np.clip(np.searchsorted(lines, own), 0, len(lines) - 1)
     feedback, reference = np.split(pose_controller(closed.controller, loop).sweep(lines), 2, axis=2)
     seen = LoopLines(lines, loop.scale, feedback)
-    plant = loop.pose @ select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges]).sweep(lines)
+    plant = loop.pose @ select(closed.held, loop.actuators, loop.gaps).sweep(lines)
     back = feedback @ seen.sensitivity(plant)
     forward = reference - back @ plant @ reference
-    held = poles.held(lines, hardware)
+    every = (_held(values, np.append(lines, 0.0), hardware) for values in (poles.values, np.conj(poles.values)))
+    held = np.stack([each[:-1] - each[-1] for each in every])
     peaks = np.max(np.abs(held[:, place, np.arange(len(own))]), axis=0)
     driven = [np.linalg.norm(np.einsum("dn,dnc->dc", poles.entries, each[place]) / loop.scale, axis=1) for each in (back, forward)]
     seen_as = np.linalg.norm(poles.pose(loop.pose) * loop.scale, axis=1)
     lengths = np.array([loop.length if each[0] == "r" else 1.0 for each in COMPONENTS])
     moved = np.linalg.norm(poles.exits[:, len(loop.gauges) :] * lengths, axis=1)
     decay = 2.0 * np.abs(np.real(poles.values)) / np.abs(poles.values)
-    return _Contributions(seen, plant, loop.pose, poles, held, place, peaks * seen_as * driven[0], peaks * moved * driven[1] * decay)
+    return _Contributions(seen, plant, loop.pose, poles, held, peaks * seen_as * driven[0], peaks * moved * driven[1] * decay)
 
 
 def _choose(given: _Contributions) -> tuple[Array, float]:
@@ -158,26 +161,13 @@ class _Poles:
         """Residues (d, c) at the pose, from the gauges (the first exits)."""
         return self.exits[:, : pose.shape[1]] @ pose.T
 
-    def held(self, lines: Array, hardware: Hardware) -> Array:
-        """Sampled responses (2, f, d) behind the hold, less the static term, and their conjugates."""
-        every = [_held(values, np.append(lines, 0.0), hardware) for values in (self.values, np.conj(self.values))]
-        return np.stack([each[:-1] - each[-1] for each in every])
-
-    def response(self, pose: Array, held: Array, chosen: Array) -> Array:
-        """Change (f, c, n) by the `chosen` modes at frequency lines of a plant with their static compliance."""
-        outer = (self.pose(pose)[:, :, None] * self.entries[:, None, :]).reshape(len(self.values), -1)
-        found = (held[0] * chosen) @ outer + (held[1] * chosen) @ np.conj(outer)
-        return found.reshape(held.shape[1], len(pose), -1)
-
 
 def _left_out(whole: Plant, kept: Array) -> _Poles:
     """Poles of omitted modes, each by itself next to all retained parts: amplifiers, gauges, inner loops and modes."""
-    outputs = [*(f"gap.{name}" for name in whole.gauges), *(f"relative.{name}" for name in COMPONENTS)]
+    outputs = [*whole.coordinates.gaps, *(f"relative.{name}" for name in COMPONENTS)]
     system, width = select(whole.system, whole.actuators, outputs), len(whole.actuators)
-    balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
-    entry, exit_ = system.B / scale[:, None], system.C * scale
-    names = [name for name, each in zip(mode_names(whole), kept, strict=True) if not each]
-    places = np.array([[whole.states.index(f"{name}{mark}") for mark in ("", "'")] for name in names])
+    balanced, entry, exit_, scale = system.balanced
+    places = np.array([[whole.states.index(f"{name}{mark}") for mark in ("", "'")] for name in compress(mode_names(whole), ~kept)])
     beside = np.setdiff1d(np.arange(len(system.A)), places.ravel())
     inner, driven, seen = balanced[np.ix_(beside, beside)], entry[beside], exit_[:, beside]
     values, exits, entries = [], [], []
@@ -208,11 +198,6 @@ def _held(poles: Array, lines: Array, hardware: Hardware) -> Array:
     late = np.exp(poles * (1.0 - part) * step)
     now, before = (late - 1.0) / poles, late * (np.exp(poles * part * step) - 1.0) / poles
     return z**-whole * (now + before / z) / (z - np.exp(poles * step))
-
-
-def _folded(frequencies: Array, step: float | None) -> Array:
-    """Alias frequencies [Hz] after sampling."""
-    return frequencies if step is None else frequencies - np.round(frequencies * step) / step
 
 
 def _lines(closed: Loop, poles: Array) -> Array:

@@ -39,7 +39,7 @@ class Actuation:
     def __init__(self, given: Machine) -> None:
         bias, model, stacks = given.amplifiers.bias, given.compensation, given.hysteresis
         self._machine, self._convert, self._most = given, rounder(given.amplifiers.step), given.amplifiers.slew * given.step
-        self._is_slow = bool(np.any(np.isfinite(self._most)))
+        self._is_slow = np.any(np.isfinite(self._most))
         self._last = self._leaked = np.zeros(len(given.actuators))
         if model is not None:
             self._inverse, self._plays = inverse(model), model.start(bias)

@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.control.simulation.machine import Machine
+from flexstage.control.systems.system import names_of
 
 
-@dataclass(frozen=True, eq=False)
-class ExternalInputs:
-    """External inputs: `disturbances` (n, w) of the plant, noise of `readings` (n, g) [m], and noise of `strokes` (n, m) [m]."""
-
-    disturbances: Array
-    readings: Array
-    strokes: Array
-
-
-def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> ExternalInputs:
+def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> list[Array]:
     """Arrange named series (n,) of `count` samples in the order of the loop's inputs; missing series are zero.
+
+    The three groups of series are disturbances (n, w) of the plant, noise of readings (n, g) [m], and noise of strokes (n, m) [m].
 
     A name is a plant input other than a stroke, for example `ground.x` or `platform.fz`, or it is `noise.<gauge>` or `noise.<actuator>`
     [m]. Raises `DesignError` for unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a
@@ -32,14 +25,14 @@ def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> Ext
     >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()
     >>> known = machine(example.plant, example.controller)
-    >>> inflow(known, 2, {"noise.S": np.array([1e-9, 2e-9])}).readings.tolist()
+    >>> inflow(known, 2, {"noise.S": np.array([1e-9, 2e-9])})[1].tolist()
     [[1e-09], [2e-09]]
     """
     named = {name: np.asarray(values, dtype=float) for name, values in disturbances.items()}
     readings, strokes = ([f"noise.{name}" for name in names] for names in (given.gauges, given.actuators))
-    groups = [channel.name for channel in given.disturbances], readings, strokes
+    groups = names_of(given.disturbances), readings, strokes
     require(_findings(named, [name for names in groups for name in names], count, readings))
-    return ExternalInputs(*(np.array([named.get(name, np.zeros(count)) for name in names]).reshape(-1, count).T for names in groups))
+    return [np.array([named.get(name, np.zeros(count)) for name in names]).reshape(-1, count).T for names in groups]
 
 
 def _findings(named: Mapping[str, Array], known: list[str], count: int, readings: list[str]) -> Iterator[Finding]:

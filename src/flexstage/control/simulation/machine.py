@@ -9,14 +9,14 @@ import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, require, suggest_nearest, unknown_names
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest, unknown_names
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.models.inverse import inverse_findings
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.models.protocol import Hysteresis
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
-from flexstage.control.systems.system import System, select
+from flexstage.control.systems.system import System, names_of, select
 from flexstage.models.linear.model import Channel
 
 
@@ -96,7 +96,7 @@ class Machine:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the loop's coordinates."""
-        return tuple(channel.name for channel in self.coordinates)
+        return names_of(self.coordinates)
 
     @property
     def disturbances(self) -> tuple[Channel, ...]:
@@ -152,13 +152,12 @@ def machine(
     (('x',), ('S',), 0.0001)
     """
     if given.hardware.step is None:
-        require([Finding("loop", "the loop is continuous, but the simulation needs samples", "Specify the sampling rate")])
+        raise refuse("loop", "the loop is continuous, but the simulation needs samples", "Specify the sampling rate")
     loop, nothing = given.coordinates, np.full(len(given.actuators), np.nan)
     power = [given.hardware.amplifiers.get(name, Amplifier()) for name in given.actuators]
     senses = [given.hardware.sensors.get(name, Sensor()) for name in given.gauges]
     plant = zero_order_hold(given)
-    readings = tuple(f"gap.{name}" for name in given.gauges)
-    kept = plant if motions is None else select(plant, plant.input_names, (*readings, *motions))
+    kept = plant if motions is None else select(plant, plant.input_names, (*loop.gaps, *motions))
     return Machine(
         plant=kept,
         controller=controller,
@@ -168,14 +167,14 @@ def machine(
         pose=loop.pose,
         amplifiers=Amplifiers(
             *np.array([(each.low, each.high, each.slew, each.step) for each in power]).T,
-            gain=nothing if electric is None else np.asarray(electric.gain, dtype=float),
-            bias=nothing if electric is None else np.asarray(electric.bias, dtype=float),
+            gain=nothing if electric is None else electric.gain,
+            bias=nothing if electric is None else electric.bias,
         ),
         resolution=np.array([each.resolution for each in senses]),
         hysteresis=hysteresis,
         compensation=compensation,
         half_range=np.array([each.half_range for each in senses]),
-        relief=None if hysteresis is None else _relief(power, given.hardware.step or np.nan),
+        relief=None if hysteresis is None else _relief(power, given.hardware.step),
     )
 
 

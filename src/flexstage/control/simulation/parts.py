@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.simulation.machine import Machine
-from flexstage.control.systems.system import System, select
+from flexstage.control.systems.system import System, names_of, select
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,13 +49,10 @@ def parts(given: Machine) -> Parts:
     True
     """
     plant, command = given.plant, select(given.controller, given.controller.input_names, given.commands)
-    others = tuple(channel.name for channel in given.disturbances)
-    motions = tuple(channel.name for channel in given.motions)
-    of_error, of_reference, of_pose = (
-        _columns(command, tuple(f"{kind}.{name}" for name in given.names)) for kind in ("error", "reference", "pose")
-    )
-    driven = select(plant, given.actuators, (*given.readings, *motions))
-    shaken = select(plant, others, (*given.readings, *motions))
+    outputs = (*given.readings, *names_of(given.motions))
+    of_error, of_reference, of_pose = (_columns(command, kind, given.names) for kind in ("error", "reference", "pose"))
+    driven = select(plant, given.actuators, outputs)
+    shaken = select(plant, names_of(given.disturbances), outputs)
     count = len(given.readings)
     return Parts(
         A=plant.A,
@@ -69,19 +66,18 @@ def parts(given: Machine) -> Parts:
         controller=command.A,
         from_reference=of_error[0] + of_reference[0],
         from_pose=of_pose[0] - of_error[0],
-        from_applied=_columns(command, tuple(f"applied.{name}" for name in given.actuators))[0],
+        from_applied=_columns(command, "applied", given.actuators)[0],
         command=command.C,
         command_r=of_error[1] + of_reference[1],
         command_q=of_pose[1] - of_error[1],
     )
 
 
-def _columns(system: System, names: tuple[str, ...]) -> tuple[Array, Array]:
-    """Columns of B and D, zero for absent inputs."""
+def _columns(system: System, kind: str, names: tuple[str, ...]) -> tuple[Array, Array]:
+    """Columns of B and D for the inputs of a kind, zero for absent inputs."""
     known = system.input_names
-    found = [np.zeros((len(matrix), len(names))) for matrix in (system.B, system.D)]
-    for column, name in enumerate(names):
-        if name in known:
-            found[0][:, column] = system.B[:, known.index(name)]
-            found[1][:, column] = system.D[:, known.index(name)]
-    return found[0], found[1]
+    there = [column for column, name in enumerate(names) if f"{kind}.{name}" in known]
+    entering, direct = (np.zeros((len(matrix), len(names))) for matrix in (system.B, system.D))
+    only = select(system, [f"{kind}.{names[column]}" for column in there], system.output_names)
+    entering[:, there], direct[:, there] = only.B, only.D
+    return entering, direct

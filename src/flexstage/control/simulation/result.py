@@ -14,6 +14,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, Along, Heading, Layout
 from flexstage.control.simulation.machine import Machine
+from flexstage.control.systems.system import names_of
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS
 
@@ -54,7 +55,7 @@ class Simulated(InNotebook):
 
     def motion(self, name: str) -> Array:
         """Return the true motion (n,) of the channel `name` (`platform.x`) [m, rad]; raises `DesignError` if it was not recorded."""
-        known = [channel.name for channel in self.channels]
+        known = names_of(self.channels)
         if name not in known:
             raise refuse(name, "not recorded in the simulation", f"{suggest_nearest(name, known)}; add this channel to the motions")
         return self.motions[:, known.index(name)]
@@ -65,7 +66,7 @@ class Simulated(InNotebook):
 
         The pose is relative to the moving ground, as the gauges measure it, if the motions `relative.<c>` were recorded.
         """
-        known = {channel.name for channel in self.channels}
+        known = names_of(self.channels)
         names = [f"relative.{channel.name}" for channel in self.coordinates]
         kept = [name if name in known else f"platform.{name.partition('.')[2]}" for name in names]
         return self.reference - np.stack([self.motion(name) for name in kept], axis=-1)
@@ -159,14 +160,10 @@ def tracking(found: Simulated) -> Matrix:
     >>> still.columns, still.values.tolist()
     (('rms', 'peak', 'true rms', 'true peak'), [[0.0, 0.0, 0.0, 0.0]])
     """
-    columns = [each for error in (found.error, found.true_error) for each in (_rms(error), np.max(np.abs(error), axis=0))]
-    names = tuple(channel.name for channel in found.coordinates)
+    errors = (found.error, found.true_error)
+    columns = [each for error in errors for each in (np.sqrt(np.mean(error**2, axis=0)), np.max(np.abs(error), axis=0))]
     units = tuple((channel.unit,) * 4 for channel in found.coordinates)
-    return Matrix(np.stack(columns, axis=-1), names, ("rms", "peak", "true rms", "true peak"), units)
-
-
-def _rms(values: Array) -> Array:
-    return np.sqrt(np.mean(values**2, axis=0))
+    return Matrix(np.stack(columns, axis=-1), names_of(found.coordinates), ("rms", "peak", "true rms", "true peak"), units)
 
 
 @dataclass(frozen=True, eq=False)

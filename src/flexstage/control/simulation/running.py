@@ -50,9 +50,9 @@ class RunningLoop:
         linear, row, ends, reach, rows = self._linear, self._row, self._ends, self.machine.reach, np.empty((len(wanted), self._ends[-1]))
         x, stroke, z, reference, pose, applied, command, asked, gives, reading = np.split(row, ends[:-1])
         of_plant, known, of_control = row[: ends[1]], row[ends[1] : ends[4]], row[ends[1] : ends[5]]
-        places, entering = self._places(len(wanted)), self._entering
-        shaken, added = entering.disturbances[places], entering.strokes[places]
-        noises = shaken @ linear.reading_w.T + entering.readings[places]
+        places = self._places(len(wanted))
+        shaken, read, added = (each[places] for each in self._entering)
+        noises = shaken @ linear.reading_w.T + read
         drives = shaken @ linear.disturbed.T + added @ linear.stroke.T
         with np.errstate(over="ignore", invalid="ignore"):
             for out, asked_for, noise, drive in zip(rows, wanted, noises, drives, strict=True):
@@ -96,5 +96,5 @@ def require_finite(given: Machine, rows: Array) -> None:
     """
     lost = ~np.all(np.isfinite(rows), axis=-1)
     if np.any(lost):
-        what = f"the simulation diverged {int(np.argmax(lost)) * given.step:g} s after the start: the loop is unstable"
+        what = f"the simulation diverged {np.argmax(lost) * given.step:g} s after the start: the loop is unstable"
         raise refuse("loop", what, "Reduce the gains, or find the growing mode in the stability result")

@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest, un
 from flexstage.base.number import Array
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
-from flexstage.control.systems.system import System, connect, rename, select, static
+from flexstage.control.systems.system import System, connect, names_of, rename, select, static
 from flexstage.models.linear.model import Channel
 
 
@@ -78,10 +78,10 @@ def loop(given: Plant, controller: System) -> Loop:
     """
     require(_findings(given, controller))
     wanted = [name for name in controller.input_names if not name.startswith("applied.")]
-    at, commands = given.coordinates, _names(LoopBreak.COMMAND.channels(given))
+    at, commands = given.coordinates, names_of(LoopBreak.COMMAND.channels(given))
     wired = select(controller, wanted, commands)
     plant_held = zero_order_hold(given)
-    poses = _names((*at.motions("pose."), *at.motions("error.")))
+    poses = names_of((*at.motions("pose."), *at.motions("error.")))
     outputs = (*plant_held.output_names[len(given.gauges) :], *given.gauges, *poses, *commands, *given.actuators)
     system = connect(*_wiring(given, plant_held, wired), _entries(given), outputs)
     return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
@@ -141,7 +141,7 @@ def _loop_cut(closed: Loop, chosen: Iterable[Channel]) -> System:
     given = closed.plant
     systems, links = _wiring(given, closed.held, closed.controller)
     entries = {each.name: replace(each, name=f"cut.{each.name.partition('.')[2]}") for each in chosen}
-    swapped, zero = {name: each.name for name, each in entries.items()}, _names(_entries(given))
+    swapped, zero = {name: each.name for name, each in entries.items()}, names_of(_entries(given))
     changed = {
         entry: {swapped.get(term, term): factor for term, factor in terms.items() if term not in zero} for entry, terms in links.items()
     }
@@ -152,16 +152,13 @@ def _loop_cut(closed: Loop, chosen: Iterable[Channel]) -> System:
 def _wiring(given: Plant, plant: System, controller: System) -> tuple[tuple[System, ...], dict[str, dict[str, float]]]:
     """Inputs of plant, estimate and controller; only poses and commands connect them."""
     entry = rename(controller, {name: f"to.{name}" for name in controller.input_names})
-    entry = replace(entry, outputs=controller.outputs)
     links: dict[str, dict[str, float]] = {name: {name: 1.0} for name in plant.input_names if name not in given.actuators}
     links |= {f"entry.{name}": {f"command.{name}": 1.0, f"noise.{name}": 1.0} for name in given.actuators}
     links |= {f"gap.{name}": {f"gap.{name}": 1.0, f"noise.{name}": 1.0} for name in given.gauges}
-    for name in given.coordinates.names:
-        terms = {f"reference.{name}": 1.0, f"pose.{name}": -1.0}
-        links[f"difference.{name}"] = terms
-        links |= {f"to.error.{name}": terms} if f"error.{name}" in controller.input_names else {}
+    links |= {f"difference.{name}": {f"reference.{name}": 1.0, f"pose.{name}": -1.0} for name in given.coordinates.names}
     for name in controller.input_names:
-        links |= {} if name.startswith("error.") else {f"to.{name}": {name: 1.0}}
+        kind, _, axis = name.partition(".")
+        links[f"to.{name}"] = links[f"difference.{axis}"] if kind == "error" else {name: 1.0}
     return (plant, _estimate(given), _sums(given), entry), links
 
 
@@ -177,10 +174,6 @@ def _sums(given: Plant) -> System:
     entry = (*given.coordinates.commands("entry."), *given.coordinates.motions("difference."))
     exit_ = (*given.coordinates.commands(), *given.coordinates.motions("error."))
     return static(np.eye(len(entry)), entry, exit_, given.hardware.step)
-
-
-def _names(channels: Iterable[Channel]) -> tuple[str, ...]:
-    return tuple(each.name for each in channels)
 
 
 def _entries(given: Plant) -> tuple[Channel, ...]:
@@ -208,8 +201,8 @@ def _findings(given: Plant, controller: System) -> Iterator[Finding]:
         what = f"different sampling (got {kinds[0]}, expected {kinds[1]}, like the hardware)"
         yield Finding("controller", what, "Use one sampling rate for both")
     at = given.coordinates
-    known = _names((*at.motions("error."), *at.motions("reference."), *at.motions("pose."), *at.commands("applied.")))
+    known = names_of((*at.motions("error."), *at.motions("reference."), *at.motions("pose."), *at.commands("applied.")))
     yield from unknown_names(controller.input_names, known, "input of a controller")
-    for name in _names(LoopBreak.COMMAND.channels(given)):
+    for name in names_of(LoopBreak.COMMAND.channels(given)):
         if name not in controller.output_names:
             yield Finding("controller", f"missing output {name}", "Add a command output for every actuator; it may be zero")

@@ -119,7 +119,7 @@ def dense_frequencies(poles: Array, step: float | None) -> Array:
     if not len(natural):
         natural = np.array([1.0 if step is None else 0.01 / step])
     end = 100.0 * np.max(natural) if step is None else 0.5 / step
-    low = 1e-3 * min(float(np.min(natural)), end)
+    low = 1e-3 * min(np.min(natural), end)
     coarse = np.geomspace(low, end, 2 + int(_PER_DECADE * np.log10(end / low)))
     near = points_around(rates)
     return np.unique(np.concatenate([coarse, near[(near > low) & (near < end)]]))

@@ -82,11 +82,10 @@ def _control() -> Any:
 
 
 def _channels(given: tuple[Channel, ...] | None, system: Any, kind: str) -> tuple[Channel, ...]:
-    labels = system.input_labels if kind == "input" else system.output_labels
+    labels = getattr(system, f"{kind}_labels")
     if given is None:
         return tuple(Channel(label, "1") for label in labels)
     if len(given) != len(labels):
-        require(
-            [Finding(f"{kind}s", f"wrong number of names (got {len(given)}, expected {len(labels)})", f"Use one channel for each {kind}")]
-        )
+        what = f"wrong number of names (got {len(given)}, expected {len(labels)})"
+        raise refuse(f"{kind}s", what, f"Use one channel for each {kind}")
     return given

@@ -46,8 +46,9 @@ def peak(system: System) -> Peak:
     if system.growth >= 0.0:
         raise refuse("peak", f"the system is unstable (growth rate {system.growth:.3g} 1/s)", "Stabilise the system first")
     plane = to_plane(system)
-    frequencies = _first_frequencies(system)
-    best = _highest_of(system, frequencies)
+    poles, step = system.poles, system.step
+    end, own, turn = (np.inf, poles, 2.0 * np.pi) if step is None else (0.5 / step, np.angle(poles), 2.0 * np.pi * step)
+    best = _highest_of(system, np.concatenate([[0.0, end], np.abs(own) / turn]))
     least = (1.0 + _APART) * float(np.linalg.norm(plane.system.D, 2))
     for _ in range(30):
         crossings = level_crossings(plane, max(best.value * (1.0 + _ACCURACY), least)) if best.value > 0.0 else np.zeros(0)
@@ -88,7 +89,7 @@ def to_plane(system: System) -> Plane:
     True
     """
     if system.step is None:
-        unit = float(np.sqrt(np.mean(np.abs(system.poles) ** 2))) or 1.0 if len(system.A) else 1.0
+        unit = np.sqrt(np.mean(np.abs(system.poles) ** 2)) or 1.0 if len(system.A) else 1.0
         moved = replace(system, A=system.A / unit, B=system.B / unit)
     else:
         unit, inverse = 1.0, np.linalg.inv(system.A + np.eye(len(system.A)))
@@ -129,21 +130,13 @@ def level_crossings(plane: Plane, level: float) -> Array:
     return plane.frequencies(np.unique(np.abs(np.imag(found))[near]))
 
 
-def _first_frequencies(system: System) -> Array:
-    """Candidate frequencies of a peak: 0, the end, and each pole."""
-    poles = system.poles
-    if system.step is None:
-        return np.concatenate([[0.0, np.inf], np.abs(poles) / (2.0 * np.pi)])
-    return np.concatenate([[0.0, 0.5 / system.step], np.abs(np.angle(poles)) / (2.0 * np.pi * system.step)])
-
-
 def _sizes(system: System, frequencies: Array) -> Array:
     return np.linalg.svd(system.sweep(frequencies), compute_uv=False)[:, 0]
 
 
 def _highest_of(system: System, frequencies: Array) -> Peak:
     sizes = _sizes(system, frequencies)
-    place = int(np.argmax(sizes))
+    place = np.argmax(sizes)
     return Peak(float(sizes[place]), float(frequencies[place]))
 
 

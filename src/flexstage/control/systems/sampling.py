@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.systems.system import System
 
@@ -110,7 +110,7 @@ def bilinear(system: System, step: float, prewarp: float | None = None) -> Syste
     require(_findings(system, step))
     if prewarp is not None and not 0.0 < prewarp < 0.5 / step:
         what = f"{prewarp:g} Hz is not between 0 and half the sampling rate, {0.5 / step:g} Hz"
-        require([Finding("prewarp", what, "Choose a lower frequency, or sample faster")])
+        raise refuse("prewarp", what, "Choose a lower frequency, or sample faster")
     factor = 2.0 / step if prewarp is None else 2.0 * np.pi * prewarp / np.tan(np.pi * prewarp * step)
     identity = np.eye(len(system.A))
     inverse = np.linalg.inv(factor * identity - system.A)

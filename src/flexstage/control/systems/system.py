@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.finding import Finding, require, suggest_nearest, unknown_names
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest, unknown_names
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.units.quantity import TIME
@@ -22,6 +22,11 @@ _SINGULAR = 1e-12
 _CHUNK = 2_000_000
 _FEW = 12
 """Number of points below which solving one by one costs less than row by row."""
+
+
+def names_of(channels: Iterable[Channel]) -> tuple[str, ...]:
+    """Return the names of channels."""
+    return tuple(channel.name for channel in channels)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +52,12 @@ class System(CheckedFields):
     @property
     def input_names(self) -> Annotated[tuple[str, ...], Called("inputs")]:
         """Names of the inputs."""
-        return tuple(channel.name for channel in self.inputs)
+        return names_of(self.inputs)
 
     @property
     def output_names(self) -> Annotated[tuple[str, ...], Called("outputs")]:
         """Names of the outputs."""
-        return tuple(channel.name for channel in self.outputs)
+        return names_of(self.outputs)
 
     @cached_property
     def poles(self) -> Array:
@@ -67,14 +72,20 @@ class System(CheckedFields):
             return -np.inf
         return float(np.max(np.real(poles)) if self.step is None else np.log(max(np.max(np.abs(poles)), 1e-300)) / self.step)
 
+    @property
+    def balanced(self) -> tuple[Array, Array, Array, Array]:
+        """Matrices A, B and C after balancing, and the scale factors (n,) of the states."""
+        A, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
+        return A, self.B / scale[:, None], self.C * scale, scale
+
     @cached_property
     def schur_form(self) -> tuple[Array, Array, Array]:
         """Matrices T, Q^H B and C Q of the complex Schur form A = Q T Q^H (T triangular), after balancing."""
         if not np.any(np.tril(self.A, -1)):  # single-loop laws are already triangular
             return self.A.astype(complex), self.B.astype(complex), self.C.astype(complex)
-        balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
-        triangle, vectors = scipy.linalg.schur(balanced.astype(complex), output="complex")[:2]
-        return triangle, vectors.conj().T @ (self.B / scale[:, None]), (self.C * scale) @ vectors
+        A, B, C, _ = self.balanced
+        triangle, vectors = scipy.linalg.schur(A.astype(complex), output="complex")[:2]
+        return triangle, vectors.conj().T @ B, C @ vectors
 
     def _points(self, frequencies: Array) -> Array:
         turning = 2j * np.pi * np.asarray(frequencies, dtype=float)
@@ -86,10 +97,10 @@ class System(CheckedFields):
         lambda = j omega, or e^{j omega T} for a sampled system. The states are balanced first, because modal velocities are about a
         thousand times larger than modal displacements. Without balancing, the solution would lose accuracy by a factor of about a thousand.
         """
-        balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
-        entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)
-        shifted = points[:, None, None] * np.eye(len(balanced)) - balanced
-        return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
+        A, B, C, _ = self.balanced
+        points = self._points(frequencies)
+        shifted = points[:, None, None] * np.eye(len(A)) - A
+        return C @ np.linalg.solve(shifted, np.broadcast_to(B.astype(complex), (len(points), *B.shape))) + self.D
 
     def sweep(self, frequencies: Array, columns: slice = slice(None)) -> Array:
         """Compute the frequency response at many frequencies, for the inputs in `columns`.
@@ -171,13 +182,9 @@ def lag(channels: tuple[Channel, ...], bandwidths: Array, outputs: tuple[Channel
     [1.0, 0.7071]
     """
     bandwidths = np.asarray(bandwidths, dtype=float)
-    slow = np.flatnonzero(np.isfinite(bandwidths))
-    rates = 2.0 * np.pi * bandwidths[slow]
-    entry = np.zeros((len(slow), len(channels)))
-    entry[range(len(slow)), slow] = rates
-    exit_ = np.zeros((len(channels), len(slow)))
-    exit_[slow, range(len(slow))] = 1.0
-    return System(-np.diag(rates), entry, exit_, np.diag(1.0 * np.isinf(bandwidths)), channels, outputs)
+    slow = np.isfinite(bandwidths)
+    rates, chosen = 2.0 * np.pi * bandwidths[slow], np.eye(len(channels))[slow]
+    return System(-np.diag(rates), rates[:, None] * chosen, chosen.T, np.diag(1.0 * ~slow), channels, outputs)
 
 
 def rename(system: System, names: Mapping[str, str]) -> System:
@@ -245,14 +252,14 @@ def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple
     whole = _append(parts)
     require(_link_findings(whole, links, inputs))
     wired = {name: links.get(name, {name: 1.0}) for name in whole.input_names}
-    rows, external = whole.output_names, tuple(channel.name for channel in inputs)
+    rows, external = whole.output_names, names_of(inputs)
     feedback, entry = (
         np.array([[terms.get(name, 0.0) for name in names] for terms in wired.values()]).reshape(len(wired), len(names))
         for names in (rows, external)
     )
     solve = np.eye(len(wired)) - feedback @ whole.D
     if np.min(np.abs(np.linalg.eigvals(solve)), initial=1.0) < _SINGULAR:
-        require([Finding("loop", "an algebraic loop of gain 1 has no solution", "Add a delay or a lag to the loop")])
+        raise refuse("loop", "an algebraic loop of gain 1 has no solution", "Add a delay or a lag to the loop")
     states, driven = np.linalg.solve(solve, feedback @ whole.C), np.linalg.solve(solve, entry)
     closed = System(
         whole.A + whole.B @ states, whole.B @ driven, whole.C + whole.D @ states, whole.D @ driven, inputs, whole.outputs, whole.step
@@ -269,7 +276,7 @@ def _append(parts: tuple[System, ...]) -> System:
     steps = {part.step for part in parts}
     if len(steps) != 1:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
-        require([Finding("systems", f"the steps differ: {shown}", "Use the same step for all")])
+        raise refuse("systems", f"the steps differ: {shown}", "Use the same step for all")
     return System(
         *block_matrices(parts),
         inputs=tuple(channel for part in parts for channel in part.inputs),
@@ -279,7 +286,7 @@ def _append(parts: tuple[System, ...]) -> System:
 
 
 def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Channel, ...]) -> Iterable[Finding]:
-    external = tuple(channel.name for channel in inputs)
+    external = names_of(inputs)
     sources = (*external, *whole.output_names)
     for name in links:
         yield from unknown_names([name], whole.input_names, "input")
