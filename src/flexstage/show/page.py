@@ -9,9 +9,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from types import MappingProxyType
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from flexstage.base.text import printable
+from flexstage.show.figures.export import to_svg
 from flexstage.show.render import templates
 from flexstage.show.table import Table
 from flexstage.show.viewer.data import StageData
@@ -36,6 +37,16 @@ class Picture:
     caption: str = ""
     plays: str = ""
     reading: str = ""
+
+
+def picture(figure: Any, name: str, description: str, caption: str, *, reading: str = "") -> Picture:
+    """Convert a figure to a picture; `name` and `description` are those of `to_svg`.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> picture(canvas(1.0, 1.0), "empty", "nothing", "An empty figure.").caption
+    'An empty figure.'
+    """
+    return Picture(to_svg(figure, name, description), caption, reading=reading)
 
 
 @dataclass(frozen=True)

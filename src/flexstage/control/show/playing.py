@@ -33,25 +33,23 @@ def _played(number: int, run: Run, axes: dict[str, Array]) -> Iterator[Motion]:
     if not axes.keys() >= set(names):
         return
     times = np.linspace(0.0, _until(run), _INSTANTS)
-    wanted, error = (_sampled(seen.times, values, times) for values in (seen.reference, seen.true_error))
+    wanted, error = (
+        np.stack([np.interp(times, seen.times, column) for column in values.T], axis=-1) for values in (seen.reference, seen.true_error)
+    )
     true = wanted - error
     basis = np.stack([axes[name] / _UNIT for name in names])
     far = int(np.argmax(np.sum((true * _scale(true)) ** 2, axis=1)))
     moved = [index for index, channel in enumerate(seen.coordinates) if channel.name in run.course.moved]
     curves = [_curve("time", "s", times)]
     for index in moved:
-        unit, name = seen.coordinates[index].unit, names[index]
-        curves += [_curve(f"reference of {name}", unit, wanted[:, index]), _curve(name, unit, true[:, index])]
-        curves += [_curve(f"error of {name}", unit, error[:, index])]
-    factor = 1.0 if run.figures is not None else magnification(float(np.max(np.ptp(wanted[:, moved], axis=0))), error[:, moved])
-    label = f"step {run.course.name}" if run.figures is not None else _followed(run.course.name, factor)
+        name = names[index]
+        drawn = {f"reference of {name}": wanted, name: true, f"error of {name}": error}
+        curves += [_curve(label, seen.coordinates[index].unit, values[:, index]) for label, values in drawn.items()]
+    factor = 1.0 if run.figures is not None else magnification(np.max(np.ptp(wanted[:, moved], axis=0)), error[:, moved])
+    label = f"{'' if run.figures is None else 'step '}{run.course.name}"
+    label += "" if factor == 1.0 else f", error magnified {factor:g} times"
     told = Response(basis, wanted - factor * error, tuple(curves))
     yield Motion(Group.RESPONSE, f"{number} {run.course.name}", label, np.einsum("n,nbk->bk", true[far], basis), response=told)
-
-
-def _followed(name: str, factor: float) -> str:
-    """Label of a trajectory, and the magnification of its visible error."""
-    return name if factor == 1.0 else f"{name}, error magnified {factor:g} times"
 
 
 _UNIT = 1e-6
@@ -63,12 +61,8 @@ def _until(run: Run) -> float:
     last = float(run.simulated.times[-1])
     if run.figures is None:
         return last
-    settled = float(run.figures.settling[run.index])
+    settled = run.figures.settling[run.index]
     return min(last, _SETTLED * settled) if np.isfinite(settled) and settled > 0.0 else last
-
-
-def _sampled(times: Array, values: Array, wanted: Array) -> Array:
-    return np.stack([np.interp(wanted, times, column) for column in values.T], axis=-1)
 
 
 def _scale(values: Array) -> Array:
@@ -78,5 +72,5 @@ def _scale(values: Array) -> Array:
 
 
 def _curve(name: str, unit: str, values: Array) -> Curve:
-    form = display_unit_of(unit, float(np.max(np.abs(values), initial=0.0)))
+    form = display_unit_of(unit, np.max(np.abs(values), initial=0.0))
     return Curve(name, to_typography(form.unit), values * form.factor)

@@ -15,8 +15,7 @@ from flexstage.control.study.compare import Comparison
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.study import LoopStudy
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Head, Headline, Picture, page, section
+from flexstage.show.page import Head, Headline, page, picture, section
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import stage_section
 from flexstage.show.viewer.data import stage_data
@@ -61,14 +60,8 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
         "worst coordinate in the linear loop. The noise is the geometric mean of all coordinates, with rotations multiplied by the "
         "stage's length. A filled dot is Pareto-optimal: no other controller is at least as good in all four quantities."
     )
-    drawn = Picture(
-        to_svg(
-            front_figure(lines, [*map(kind_name, found.front)]),
-            "front",
-            "Trade-off between controllers: rejection, noise, settling, delay margin",
-        ),
-        caption,
-    )
+    figure = front_figure(lines, [*map(kind_name, found.front)])
+    drawn = picture(figure, "front", "Trade-off between controllers: rejection, noise, settling, delay margin", caption)
     compared, by_coordinate = comparison_tables(found)
     sections = (
         stage_section(data),

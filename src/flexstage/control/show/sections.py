@@ -20,15 +20,22 @@ from flexstage.control.show.figures.frequency import (
 from flexstage.control.show.figures.hysteresis import hysteresis_figure
 from flexstage.control.show.figures.noise import noise_share_figure, noise_spectrum_figure
 from flexstage.control.show.figures.time import error_figure, lesson_figure, path_figure, step_figure
-from flexstage.control.show.tables import count_modes, error_tables, loop_tables, margin_tables, measured_tables, time_tables
+from flexstage.control.show.tables import (
+    count_modes,
+    error_tables,
+    loop_tables,
+    margin_tables,
+    measured_tables,
+    stability_text,
+    time_tables,
+)
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import Run
 from flexstage.control.study.study import LoopStudy
 from flexstage.control.tuning.objective import SENSITIVITY
 from flexstage.show.display import format_value, number
-from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
-from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Prose, Section, fold, section
+from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Prose, Section, fold, picture, section
 from flexstage.show.table import matrix_table
 
 _NOISELESS = 1e-16
@@ -36,46 +43,34 @@ _NOISELESS = 1e-16
 
 def loop_section(found: LoopStudy) -> Section | None:
     """Build the overview section: facts, block diagram, components."""
-    drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
     caption = "Block diagram of the loop. The shaded blocks run on the computer, sample by sample."
-    return section("The loop", [Facts(tuple(_facts(found))), Picture(drawn, caption), *loop_tables(found)])
+    drawn = picture(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop", caption)
+    return section("The loop", [Facts(tuple(_facts(found))), drawn, *loop_tables(found)])
 
 
 def headline(found: LoopStudy) -> Headline:
     """Return the headline: stability, and the lowest phase margin."""
     if found.margins is None:
         return Headline("Open loop.")
-    stable = found.stability.stable
-    phases = {each.channel: np.rad2deg(each.phase.value) for each in found.margins.channels}
-    least = min(phases, key=phases.__getitem__)
-    return Headline(
-        f"The loop is {'stable' if stable else 'unstable'}; the smallest phase margin is {number(phases[least], 3)} deg, of loop {least}.",
-        stable,
-    )
+    least = min(found.margins.channels, key=lambda each: each.phase.value)
+    smallest = f"the smallest phase margin is {number(np.rad2deg(least.phase.value), 3)} deg, of loop {least.channel}"
+    return Headline(f"The loop is {stability_text(found)}; {smallest}.", found.stability.stable)
 
 
 def _facts(found: LoopStudy) -> Iterator[Fact]:
-    yield Fact(
-        "stability", "stable" if found.stability.stable else "unstable", f"slowest decay rate {number(-found.growth_all_modes, 3)} 1/s"
-    )
+    yield Fact("stability", stability_text(found), f"slowest decay rate {number(-found.growth_all_modes, 3)} 1/s")
     if found.controller.tuning is not None:
         yield Fact("gain crossover", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "slowest loop")
     if found.peaks is not None:
         yield Fact("peak sensitivity Ms", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB or less is usual")
-    settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
-    if settled:
-        slowest = max(settled)
+    slowest = max((test.figures.settling[test.index] for test in found.runs if test.figures is not None), default=None)
+    if slowest is not None:
         shown = f"{number(1e3 * slowest, 3)} ms" if np.isfinite(slowest) else "not settled"
         yield Fact("settling time (2 %)", shown, "of the slowest step")
     for test in found.runs:
         if test.figures is None:
-            yield _error_fact(test)
-
-
-def _error_fact(test: Run) -> Fact:
-    unit = test.tracking.unit[test.index][2]
-    value = float(test.tracking.values[test.index][2])
-    return Fact(f"{test.course.name}, {test.course.moved[0]}", format_value(value, unit, 3), "rms true error")
+            value = format_value(test.tracking.values[test.index][2], test.tracking.unit[test.index][2], 3)
+            yield Fact(f"{test.course.name}, {test.course.moved[0]}", value, "rms true error")
 
 
 def diagram_of(found: LoopStudy) -> Diagram:
@@ -87,13 +82,13 @@ def diagram_of(found: LoopStudy) -> Diagram:
         Box("gauges", f"{len(plant.gauges)}"),
         *_filters(found),
         Box("sampler", _sampler(found, rate)),
-        Box("R_s^-1", _TO_POSE, digital=True),
+        Box("R_s^-1", "readings\nto pose", digital=True),
     )
     power = tuple(plant.hardware.amplifiers.values())
     analogue = (
         Box("hold", f"{rate}\nafter {number(1e6 * plant.hardware.delay, 4)} us"),
         Box("amplifier", _bandwidth_text(power) if found.charge is None else f"charge\n{_bandwidth_text(power)}"),
-        Box("coils", "linear") if found.settled.kinematics.thrusts else Box("PZT", _stacks(found)),
+        Box("coils", "linear") if found.settled.kinematics.thrusts else Box("PZT", "linear" if setup.hysteresis is None else "hysteresis"),
     )
     onto = [("floor", "stage")] if found.settled.floor else []
     closed = setup.controller.law is not ControllerKind.NONE
@@ -106,9 +101,6 @@ def diagram_of(found: LoopStudy) -> Diagram:
         fed_forward=Compensation.REFERENCE in setup.compensate and closed,
         closed=closed,
     )
-
-
-_TO_POSE = "readings\nto pose"
 
 
 def _digital(found: LoopStudy) -> Iterator[Box]:
@@ -147,10 +139,6 @@ def _bandwidth_text(items: tuple[Amplifier | Sensor, ...]) -> str:
     return "ideal" if np.isinf(slowest) else f"{number(slowest, 4)} Hz"
 
 
-def _stacks(found: LoopStudy) -> str:
-    return "hysteresis" if found.setup.hysteresis is not None else "linear"
-
-
 def frequency_section(found: LoopStudy) -> Section | None:
     """Build the frequency section: open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
     if found.curves is None:
@@ -159,32 +147,38 @@ def frequency_section(found: LoopStudy) -> Section | None:
     modes = plant.frequencies[: 2 * len(plant.coordinates.names)]
     spots = tuple(margin_spots(found))
     opened = open_loop_figure(seen, modes, spots)
-    loops = to_svg(opened, "open-loops", "Open loops over frequency")
     peak = found.controller.tuning.spec.sensitivity if found.controller.tuning is not None else SENSITIVITY
     pair = sensitivity_figure(seen, peak)
-    sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
-    circles = to_svg(nyquist_figure(seen, peak, margin_points(found)), "nyquist", "Nyquist plot of the open loops")
-    poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
-    caption = (
-        "Bode plot of each loop, opened at the pose while the other loops are closed. Vertical dotted lines mark mode frequencies of the "
-        "stage. Circles mark gain margins (at phase −180°), and phase and delay margins (at gain 1). Every second curve is dashed."
-    )
     return section(
         "Frequency domain",
         [
             *margin_tables(found),
-            Picture(loops, caption, reading=reading(opened, spots)),
-            Picture(
-                circles,
+            picture(
+                opened,
+                "open-loops",
+                "Open loops over frequency",
+                "Bode plot of each loop, opened at the pose while the other loops are closed. Vertical dotted lines mark mode frequencies "
+                "of the stage. Circles mark gain margins (at phase −180°), and phase and delay margins (at gain 1). Every second curve is "
+                "dashed.",
+                reading=reading(opened, spots),
+            ),
+            picture(
+                nyquist_figure(seen, peak, margin_points(found)),
+                "nyquist",
+                "Nyquist plot of the open loops",
                 "Nyquist plot of each open loop near −1. Dotted circle: gain 1. Dashed circle: limit of |S|. Small circles: margins.",
             ),
-            Picture(
-                sensitivities,
+            picture(
+                pair,
+                "sensitivities",
+                "Sensitivity and complementary sensitivity over frequency",
                 "Sensitivity S (error per disturbance) and complementary sensitivity T = 1 − S. Dashed line: limit of |S|.",
                 reading=reading(pair),
             ),
-            Picture(
-                poles,
+            picture(
+                pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles),
+                "poles",
+                "Poles of the closed loop",
                 "Poles of the closed loop (with delay and hold) and of the stage in open loop. Dotted: damping ratios 0.1, 0.3 and 0.6.",
             ),
             fold("Static crosstalk", matrix_table("Static motion per reference", found.crosstalk)),
@@ -197,11 +191,11 @@ def measured_section(found: LoopStudy) -> Section | None:
     if found.measured is None:
         return None
     seen = found.measured.sensitivities
-    drawn = measured_figure(seen, found.plant.coordinates.names)
-    picture = to_svg(drawn, "measured-loops", "Sensitivities from measured responses")
+    figure = measured_figure(seen, found.plant.coordinates.names)
     sure = "shaded: 95 % interval" if seen.low is not None else "the test has no data on the uncertainty of its responses"
     caption = f"Sensitivity of each coordinate to its own disturbance, with hold and delay; {sure}."
-    return section("Loop with measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
+    drawn = picture(figure, "measured-loops", "Sensitivities from measured responses", caption, reading=reading(figure))
+    return section("Loop with measured responses", [*measured_tables(found), drawn])
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:
@@ -239,9 +233,8 @@ def time_section(found: LoopStudy) -> Section | None:
     pictures = []
     if stepped:
         figure = step_figure(stepped)
-        drawn = to_svg(figure, "steps", "Steps of every motion")
         caption = "Dashed: the reference; blue: the true motion; grey: the other coordinates of the same unit."
-        pictures.append(Picture(drawn, caption, reading=reading(figure)))
+        pictures.append(picture(figure, "steps", "Steps of every motion", caption, reading=reading(figure)))
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
         pictures += _trajectory_pictures(test, f"trajectory{number_}")
     small = None if found.second_order is None else Prose(found.second_order.text)
@@ -249,21 +242,20 @@ def time_section(found: LoopStudy) -> Section | None:
 
 
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
-    if test.course.plane is not None:
-        drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Plan view of the {test.course.name}")
-        yield Picture(drawn, f"Plan view of the {test.course.name}, to scale. The legend gives the magnification of the error.")
-    drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
-    yield Picture(drawn, "Reference minus true pose over time.")
-    if test.learned is not None:
-        taught = test.learned
+    course = test.course
+    if course.plane is not None:
+        view = f"Plan view of the {course.name}"
+        caption = f"{view}, to scale. The legend gives the magnification of the error."
+        yield picture(path_figure(test.simulated, course.plane), f"{name}-path", view, caption)
+    error = f"Error along the {course.name}"
+    yield picture(error_figure(test.simulated), f"{name}-error", f"{error} over time", "Reference minus true pose over time.")
+    if (taught := test.learned) is not None:
         figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "number of learned passes", taught.noise)
         caption = f"Error up to {number(taught.band, 4)} Hz in each pass. Dotted: component that does not repeat from pass to pass."
-        yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by pass"), caption)
-    if test.repeated is not None:
-        seen = test.repeated
+        yield picture(figure, f"{name}-lessons", f"{error} by pass", caption)
+    if (seen := test.repeated) is not None:
         figure = lesson_figure(seen.rms, seen.coordinates, seen.units, "number of previous periods")
-        caption = f"Error up to {number(seen.band, 4)} Hz in each period."
-        yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by period"), caption)
+        yield picture(figure, f"{name}-lessons", f"{error} by period", f"Error up to {number(seen.band, 4)} Hz in each period.")
 
 
 def error_section(found: LoopStudy) -> Section | None:
@@ -273,8 +265,8 @@ def error_section(found: LoopStudy) -> Section | None:
         worst = int(np.argmax(swept.rms_error))
         reached = {"without inverse": swept.bare[:, worst], "with inverse": swept.inverse[:, worst]}
         figure = hysteresis_figure(swept.wanted[:, worst], reached)
-        drawn = to_svg(figure, "hysteresis", "Hysteresis of a stack with and without the inverse model")
-        blocks.append(Picture(drawn, f"Isolated stack of {swept.actuators[worst]}, driven up and down in open loop."))
+        caption = f"Isolated stack of {swept.actuators[worst]}, driven up and down in open loop."
+        blocks.append(picture(figure, "hysteresis", "Hysteresis of a stack with and without the inverse model", caption))
     return section("Errors and noise", blocks)
 
 
@@ -282,7 +274,7 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
     budget = found.noise
     if not np.any(budget.rms > _NOISELESS):
         return
-    drawn = to_svg(noise_share_figure(budget), "noise-shares", "Contributions to the noise by source")
-    yield Picture(drawn, "Contribution of each source to the mean square of each coordinate in regulation, and the rms of the coordinate.")
-    drawn = to_svg(noise_spectrum_figure(budget), "noise-spectrum", "Noise over frequency")
-    yield Picture(drawn, "Amplitude density of the true motion, and its cumulative rms from the lowest frequency.")
+    caption = "Contribution of each source to the mean square of each coordinate in regulation, and the rms of the coordinate."
+    yield picture(noise_share_figure(budget), "noise-shares", "Contributions to the noise by source", caption)
+    caption = "Amplitude density of the true motion, and its cumulative rms from the lowest frequency."
+    yield picture(noise_spectrum_figure(budget), "noise-spectrum", "Noise over frequency", caption)

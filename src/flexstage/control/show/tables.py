@@ -64,11 +64,9 @@ def loop_table(found: LoopStudy) -> Table:
     """
     plant, hardware = found.plant, found.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
-    modes = (
-        f"{count_modes(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as static compliance"
-    )
+    modes = f"{count_modes(len(plant.frequencies))} up to {number(plant.frequencies[-1], 4)} Hz, {plant.left_out} as static compliance"
     rows = [
-        ("stability", Cell("stable" if found.stability.stable else "unstable", Mark.PASS if found.stability.stable else Mark.FAIL)),
+        ("stability", Cell(stability_text(found), Mark.PASS if found.stability.stable else Mark.FAIL)),
         ("controller", controller_text(found)),
         ("coordinates", ", ".join(plant.coordinates.names)),
         ("sampling", f"{number(found.settled.rate, 5)} Hz, output delay {delay}, zero-order hold"),
@@ -79,16 +77,23 @@ def loop_table(found: LoopStudy) -> Table:
     if found.peaks is not None:
         peaks = {"sensitivity Ms": found.peaks.sensitivity, "complementary sensitivity Mt": found.peaks.complementary}
         rows += [(f"peak {name}", f"{number(each.value, 4)} at {number(each.frequency, 4)} Hz") for name, each in peaks.items()]
-        notes.append(
-            "The sensitivity S is the error per disturbance; where S exceeds 1, the loop amplifies disturbances. The complementary "
-            "sensitivity is T = 1 - S."
-        )
-        notes.append("Peak sensitivities are computed without mode shifts.")
+        notes += [
+            (
+                "The sensitivity S is the error per disturbance; where S exceeds 1, the loop amplifies disturbances. The complementary "
+                "sensitivity is T = 1 - S."
+            ),
+            "Peak sensitivities are computed without mode shifts.",
+        ]
     if not found.retention.complete or found.retention.frequency is not None:
         notes.append(_retained(found.retention))
     if found.controller.tuning is not None:
         notes.insert(0, f"Tuned: {found.controller.tuning.reason}.")
     return make_table("Loop", ["", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
+
+
+def stability_text(found: LoopStudy) -> str:
+    """Return whether the loop is stable, as a word."""
+    return "stable" if found.stability.stable else "unstable"
 
 
 def _retained(found: Retention) -> str:
@@ -262,7 +267,7 @@ def _noise_notes(found: LoopStudy) -> tuple[str, ...]:
     if resting is not None:
         notes.append(f"The rms is from {resting.count} simulations of {number(resting.seconds, 3)} s, with rounding and amplifier limits.")
     elif still is not None:
-        notes.append(f"Simulated values are from {number(float(still.times[-1]), 3)} s of simulation, with rounding and amplifier limits.")
+        notes.append(f"Simulated values are from {number(still.times[-1], 3)} s of simulation, with rounding and amplifier limits.")
     if Kind.FLOOR in budget.kinds:
         notes.append(f"Floor vibration is included from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz.")
     return (*notes, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -70,12 +71,8 @@ def loop_diagram(diagram: Diagram) -> Any:
 def _places(blocks: Sequence[Block], edge: float) -> list[float]:
     """Centres of blocks: the computer's spaced evenly left of the edge, the others right of it."""
     inside = sum(block.digital for block in blocks)
-    left = _spread(_LEFT + 0.1, edge, inside)
-    return [*left, *_spread(edge, _RIGHT, len(blocks) - inside)]
-
-
-def _spread(start: float, end: float, count: int) -> list[float]:
-    return [start + (index + 0.5) * (end - start) / count for index in range(count)]
+    ranges = ((_LEFT + 0.1, edge, inside), (edge, _RIGHT, len(blocks) - inside))
+    return [start + (index + 0.5) * (end - start) / count for start, end, count in ranges for index in range(count)]
 
 
 def _by_name(blocks: Sequence[Block], places: Sequence[float], level: float) -> dict[str, tuple[float, float]]:
@@ -90,9 +87,11 @@ def _computer(axes: Any, edge: float) -> None:
 
 
 def _forward(axes: Any, diagram: Diagram, places: Sequence[float], width: float) -> None:
+    from matplotlib.patches import Circle
+
     _arrow(axes, (0.1, _UPPER), (_LEFT - _SUM, _UPPER))
     axes.text(0.08, _UPPER + 0.07, "x*", fontsize=8.0, fontweight="bold")
-    _sum(axes, _LEFT)
+    axes.add_patch(Circle((_LEFT, _UPPER), _SUM, facecolor=PAPER, edgecolor=INK, linewidth=0.9, zorder=3))
     axes.text(_LEFT - 0.16, _UPPER + 0.07, "+", fontsize=7.0, ha="center")
     start = _chain(axes, diagram.forward, places, (_LEFT + _SUM, _UPPER), 0.5 * width)
     _arrow(axes, (start, _UPPER), (7.12, _UPPER))
@@ -134,25 +133,17 @@ def _back(axes: Any, diagram: Diagram, places: Sequence[float], width: float) ->
 
 
 def _disturbances(axes: Any, diagram: Diagram, places: dict[str, tuple[float, float]]) -> None:
-    seen: dict[str, int] = {}
+    seen: Counter[str] = Counter()
     for text, name in diagram.onto:
         if name not in places:
             continue
         x, level = places[name]
-        sign = 1.0 if level == _UPPER else -1.0
+        sign, side = (1.0, "bottom") if level == _UPPER else (-1.0, "top")
         near, far = level + sign * 0.5 * _HIGH, level + sign * (0.5 * _HIGH + 0.2)
-        shift = 0.22 * seen.get(name, 0)
-        seen[name] = seen.get(name, 0) + 1
-        _arrow(axes, (x + shift, far), (x + shift, near), colour=GAUGE)
-        axes.text(
-            x + shift, far + sign * 0.03, to_typography(text), fontsize=6.0, color=GAUGE, ha="center", va="bottom" if sign > 0 else "top"
-        )
-
-
-def _sum(axes: Any, x: float) -> None:
-    from matplotlib.patches import Circle
-
-    axes.add_patch(Circle((x, _UPPER), _SUM, facecolor=PAPER, edgecolor=INK, linewidth=0.9, zorder=3))
+        x += 0.22 * seen[name]
+        seen[name] += 1
+        _arrow(axes, (x, far), (x, near), colour=GAUGE)
+        axes.text(x, far + sign * 0.03, to_typography(text), fontsize=6.0, color=GAUGE, ha="center", va=side)
 
 
 def _block(axes: Any, block: Block, place: tuple[float, float], width: float) -> None:
@@ -171,19 +162,9 @@ def _block(axes: Any, block: Block, place: tuple[float, float], width: float) ->
     )
     axes.add_patch(shape)
     lines = [each for each in block.detail.split("\n") if each]
-    axes.text(
-        x,
-        y + 0.055 * len(lines),
-        _SPELLED.get(block.name, to_typography(block.name)),
-        fontsize=6.8,
-        fontweight="bold",
-        ha="center",
-        va="center",
-        zorder=4,
-    )
-    for number, line in enumerate(lines):
-        level = y + 0.055 * len(lines) - 0.11 * (number + 1)
-        axes.text(x, level, to_typography(line), fontsize=5.6, color=MUTED, ha="center", va="center", zorder=4)
+    title = _SPELLED.get(block.name, to_typography(block.name)), {"fontsize": 6.8, "fontweight": "bold"}
+    for number, (text, font) in enumerate([title, *((to_typography(line), {"fontsize": 5.6, "color": MUTED}) for line in lines)]):
+        axes.text(x, y + 0.055 * len(lines) - 0.11 * number, text, ha="center", va="center", zorder=4, **font)
 
 
 def _arrow(axes: Any, start: tuple[float, float], end: tuple[float, float], colour: str = INK) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,15 +30,15 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])
         (upper, lower), loops = grid[:, 0], found.loops
-        for index, name in enumerate(found.names):
-            x, size = thin_out(found.frequencies, np.abs(loops[:, index]))
-            upper.loglog(x, np.maximum(size, _LEAST), linewidth=1.1, label=name, **look(index))
-            x, phase = thin_out(found.frequencies, _phase(loops[:, index]))
-            lower.semilogx(x, phase, linewidth=1.0, **look(index))
+        named = dict(enumerate(found.names))
+        draw_curves(upper.loglog, found.frequencies, np.maximum(np.abs(loops), _LEAST), named)
+        draw_curves(lower.semilogx, found.frequencies, _phase(loops), named)
         upper.axhline(1.0, color=INK, linewidth=0.7)
         lower.axhline(-180.0, color=INK, linewidth=0.7)
-        _set_limits(upper, loops)
-        _mark_modes(upper, marks, found.frequencies)
+        finite = np.abs(loops)[np.isfinite(loops)]
+        upper.set_ylim(max(_FLOOR, 0.3 * np.min(finite, initial=1.0)), min(_CEILING, 3.0 * np.max(finite, initial=1.0)))
+        for mark in marks[(marks > found.frequencies[0]) & (marks < found.frequencies[-1])]:
+            upper.axvline(mark, color=MUTED, linewidth=0.5, linestyle=":")
         places = np.array([(each.x, each.y) for each in spots if each.y is not None]).reshape(-1, 2)
         upper.plot(*places.T, "o", color=INK, markersize=3.0, markerfacecolor=PAPER, markeredgewidth=0.7, zorder=5)
         upper.set_ylabel("open loop L")
@@ -83,9 +83,7 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
         figure = canvas(FULL, 2.5)
         grid = panels(figure, 1, 2, Margins(left=0.62, top=0.42, across=0.68))
         for axes, values, title in ((grid[0, 0], own, "sensitivity |S|"), (grid[0, 1], 1.0 - own, "complementary sensitivity |T|")):
-            for index, name in enumerate(found.names):
-                x, size = thin_out(found.frequencies, np.abs(values[:, index]))
-                axes.loglog(x, np.maximum(size, _LEAST), linewidth=1.1, label=name, **look(index))
+            draw_curves(axes.loglog, found.frequencies, np.maximum(np.abs(values), _LEAST), dict(enumerate(found.names)))
             axes.axhline(1.0, color=INK, linewidth=0.7)
             axes.set(xlabel="frequency [Hz]", ylabel=title, xlim=_span(found.frequencies, values), ylim=(1e-3, 10.0))
             plain_ticks(axes.xaxis, axes.yaxis)
@@ -122,7 +120,7 @@ def _measured_panel(axes: Any, found: ReadLines, index: int) -> None:
     axes.loglog(*thin_out(x, found.fitted[:, index]), color=INK, linewidth=0.7, label="fitted")
     axes.loglog(*thin_out(x, found.predicted[:, index]), color=SERIES[1], linewidth=0.9, linestyle="--", label="model")
     axes.axhline(1.0, color=MUTED, linewidth=0.5)
-    axes.set_xlim(float(x[0]), float(x[-1]))
+    axes.set_xlim(x[[0, -1]])
     plain_ticks(axes.xaxis, axes.yaxis)
 
 
@@ -150,13 +148,11 @@ def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
 def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) -> None:
     """Plot damping ratio over frequency."""
     if alone is not None:
-        frequencies, ratios = _damping(alone, step)
-        axes.plot(
-            frequencies, ratios, "o", color=MUTED, markersize=3.5, markerfacecolor="none", markeredgewidth=0.6, label="stage in open loop"
-        )
+        look = {"color": MUTED, "markersize": 3.5, "markerfacecolor": "none", "markeredgewidth": 0.6}
+        axes.plot(*_damping(alone, step), "o", label="stage in open loop", **look)
     frequencies, ratios = _damping(poles, step)
     axes.plot(frequencies, ratios, "x", color=SERIES[0], markersize=4.0, markeredgewidth=0.9, label="closed loop", linestyle="none")
-    least = min(0.3 * float(np.min(ratios[ratios > 0.0], initial=1.0)), 0.5)
+    least = min(0.3 * np.min(ratios[ratios > 0.0], initial=1.0), 0.5)
     axes.set(xscale="log", yscale="log", ylim=(least, 130.0), xlabel="frequency [Hz]", ylabel="damping ratio [%]")
     plain_ticks(axes.xaxis, axes.yaxis)
     legend_above(axes, 2)
@@ -171,9 +167,15 @@ def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
     return x[places], y[places]
 
 
+def draw_curves(plot: Callable[..., Any], x: Array, values: Array, named: Mapping[int, str]) -> None:
+    """Draw the columns of values (n, k) over x (n,) by a function of a panel; `named` are the names of the series by number."""
+    for column, (index, name) in zip(values.T, named.items(), strict=True):
+        plot(*thin_out(x, column), linewidth=1.1, label=name, **look(index))
+
+
 def _phase(values: Array) -> Array:
-    """Phase unwrapped from the lowest frequency [deg], starting between -270 and 90."""
-    angle = np.rad2deg(np.unwrap(np.angle(values)))
+    """Phases (f, n) unwrapped from the lowest frequency [deg], starting between -270 and 90."""
+    angle = np.rad2deg(np.unwrap(np.angle(values), axis=0))
     return angle - _TURN * np.ceil((angle[0] - 90.0) / _TURN)
 
 
@@ -184,21 +186,9 @@ def look(index: int) -> dict[str, Any]:
 
 def _span(frequencies: Array, values: Array) -> tuple[float, float]:
     """Frequency range from a loop gain of about a hundred to the end."""
-    sizes = np.max(np.abs(values), axis=1)
-    high = np.flatnonzero(sizes > _CEILING)
-    first = 0 if not len(high) or len(high) == len(sizes) else min(int(high[-1]), len(sizes) - 2)
-    return max(float(frequencies[first]), 1e-5 * float(frequencies[-1])), float(frequencies[-1])
-
-
-def _set_limits(axes: Any, values: Array) -> None:
-    finite = np.abs(values)[np.isfinite(values)]
-    axes.set_ylim(max(_FLOOR, 0.3 * float(np.min(finite, initial=1.0))), min(_CEILING, 3.0 * float(np.max(finite, initial=1.0))))
-
-
-def _mark_modes(axes: Any, marks: Array, frequencies: Array) -> None:
-    for mark in marks:
-        if frequencies[0] < mark < frequencies[-1]:
-            axes.axvline(float(mark), color=MUTED, linewidth=0.5, linestyle=":")
+    high = np.flatnonzero(np.max(np.abs(values), axis=1) > _CEILING)
+    first = min(high[-1], len(values) - 2) if 0 < len(high) < len(values) else 0
+    return max(frequencies[first], 1e-5 * frequencies[-1]), frequencies[-1]
 
 
 def _phase_ticks(axes: Any) -> None:

@@ -14,18 +14,14 @@ from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, 
 
 def front_figure(found: Mapping[str, DetunedController], front: Collection[str]) -> Any:
     """Plot each tuned controller as a dot (filled on the Pareto `front`), with a line for the same controller at reduced gains."""
-    told = {
-        "noise [nm]": (lambda one: one.noise, 1e9),
-        "settling [ms]": (lambda one: one.settling, 1e3),
-        "delay margin [ms]": (lambda one: one.delay_margin, 1e3),
-    }
-    shown = {name: pair for name, pair in told.items() if all(len(pair[0](one)) for one in found.values())}
+    told = {"noise [nm]": ("noise", 1e9), "settling [ms]": ("settling", 1e3), "delay margin [ms]": ("delay_margin", 1e3)}
+    shown = {label: pair for label, pair in told.items() if all(len(getattr(one, pair[0])) for one in found.values())}
     with style_context():
         figure = canvas(FULL, 2.6)
         grid = panels(figure, 1, len(shown), Margins(left=0.6, top=0.32, across=0.6))[0]
-        for axes, (label, (values, factor)) in zip(grid, shown.items(), strict=True):
+        for axes, (label, (quantity, factor)) in zip(grid, shown.items(), strict=True):
             for index, (name, one) in enumerate(found.items()):
-                colour, y = SERIES[index % len(SERIES)], factor * np.asarray(values(one))
+                colour, y = SERIES[index % len(SERIES)], factor * np.asarray(getattr(one, quantity))
                 axes.loglog(one.rejection, y, color=colour, linewidth=1.0, label=name)
                 axes.plot(one.rejection[:1], y[:1], "o", color=colour, markersize=6.0, markerfacecolor=colour if name in front else "none")
             axes.set(xlabel="sensitivity crossover [Hz]", ylabel=label)

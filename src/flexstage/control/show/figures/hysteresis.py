@@ -20,8 +20,8 @@ def hysteresis_figure(wanted: Array, reached: Mapping[str, Array]) -> Any:
     >>> len(hysteresis_figure(way, {"without inverse": 0.9 * way}).axes)
     2
     """
-    largest = float(np.max(np.abs(wanted), initial=0.0))
-    errors = max(float(np.max(np.abs(each - wanted), initial=0.0)) for each in reached.values())
+    largest = np.max(np.abs(wanted), initial=0.0)
+    errors = max(np.max(np.abs(each - wanted), initial=0.0) for each in reached.values())
     form, fine, step = display_unit_of("m", largest), display_unit_of("m", errors), max(1, len(wanted) // 1500)
     with style_context():
         figure = canvas(FULL, 2.75)

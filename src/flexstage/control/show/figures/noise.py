@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.control.noise import NoiseBudget
-from flexstage.control.show.figures.frequency import legend_above, legend_of_lines, look, plain_ticks, thin_out
+from flexstage.control.show.figures.frequency import draw_curves, legend_above, legend_of_lines, plain_ticks
 from flexstage.show.display import display_unit_of, format_value, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.show.table import short_names
@@ -32,9 +32,7 @@ def noise_share_figure(found: NoiseBudget) -> Any:
             left = left + share
         for row, name, unit, square in zip(rows, coordinates, found.units, total, strict=True):
             axes.text(-1.5, row, name, ha="right", va="center", fontsize=8.0)
-            axes.text(
-                101.5, row, to_typography(format_value(float(np.sqrt(square)), unit, 3)), ha="left", va="center", fontsize=7.5, color=INK
-            )
+            axes.text(101.5, row, to_typography(format_value(np.sqrt(square), unit, 3)), ha="left", va="center", fontsize=7.5, color=INK)
         axes.set(xlim=(0.0, 100.0), ylim=(-0.6, len(total) - 0.4), yticks=[], xlabel="fraction of the mean square [%]")
         axes.grid(axis="y", visible=False)
         legend_above(axes, 6)
@@ -58,15 +56,14 @@ def _column(grid: Any, found: NoiseBudget, chosen: Sequence[int], unit: str) -> 
     names, density = short_names(found.output_names), np.sum(found.density, axis=2)[:, chosen]
     steps = 0.5 * (density[1:] + density[:-1]) * np.diff(found.frequencies)[:, None]
     summed = np.sqrt(np.concatenate([np.zeros((1, len(chosen))), np.cumsum(steps, axis=0)]))
-    form = display_unit_of(unit, float(np.max(summed, initial=0.0)))
-    for index, column, total in zip(chosen, density.T, summed.T, strict=True):
-        x, y = thin_out(found.frequencies, np.sqrt(column))
-        grid[0].loglog(x, form.factor * np.maximum(y, 1e-300), linewidth=1.0, label=names[index], **look(index))
-        x, y = thin_out(found.frequencies, total)
-        grid[1].semilogx(x, form.factor * y, linewidth=1.0, **look(index))
-    largest = form.factor * float(np.sqrt(np.max(density, initial=0.0)))
+    form = display_unit_of(unit, np.max(summed, initial=0.0))
+    named = {index: names[index] for index in chosen}
+    draw_curves(grid[0].loglog, found.frequencies, form.factor * np.maximum(np.sqrt(density), 1e-300), named)
+    draw_curves(grid[1].semilogx, found.frequencies, form.factor * summed, named)
+    largest = form.factor * np.sqrt(np.max(density, initial=0.0))
     grid[0].set(ylim=(1e-4 * largest, 3.0 * largest), ylabel=to_typography(f"density [{form.unit}/Hz^0.5]"))
-    span = float(found.frequencies[0]), float(found.frequencies[-1])
-    grid[1].set(ylim=(0.0, None), xlim=span, xlabel="frequency [Hz]", ylabel=to_typography(f"cumulative rms [{form.unit}]"))
+    grid[1].set(
+        ylim=(0.0, None), xlim=found.frequencies[[0, -1]], xlabel="frequency [Hz]", ylabel=to_typography(f"cumulative rms [{form.unit}]")
+    )
     grid[0].tick_params(labelbottom=False)
     plain_ticks(grid[0].xaxis, grid[1].xaxis, grid[0].yaxis)

@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.control.show.figures.frequency import legend_above, legend_of_lines, plain_ticks, thin_out
 from flexstage.control.simulation.result import Simulated
+from flexstage.control.systems.system import names_of
 from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, HALF, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
@@ -49,26 +50,25 @@ def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
 
 
 def _step(axes: Any, name: str, test: Simulated) -> None:
-    names = [channel.name for channel in test.coordinates]
-    index = names.index(name)
+    index = names_of(test.coordinates).index(name)
     unit = test.coordinates[index].unit
-    form = display_unit_of(unit, float(np.max(np.abs(test.reference[:, index]))))
+    form = display_unit_of(unit, np.max(np.abs(test.reference[:, index])))
     time = 1e3 * test.times
-    true = test.reference - test.true_error
+    true = form.factor * (test.reference - test.true_error)
     for other, channel in enumerate(test.coordinates):
         if other != index and channel.unit == unit:
-            axes.plot(*thin_out(time, form.factor * true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
+            axes.plot(*thin_out(time, true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
     axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--", label="reference")
-    axes.plot(*thin_out(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2, label="true")
+    axes.plot(*thin_out(time, true[:, index]), color=SERIES[0], linewidth=1.2, label="true")
     axes.set_title(to_typography(f"{name} [{form.unit}]"), fontsize=7.5, loc="left")
     axes.tick_params(labelsize=6.5)
 
 
 def _settling_band(test: Simulated, name: str) -> float:
     """End time [s] of a step plot: a multiple of the 2 % settling time."""
-    index = [channel.name for channel in test.coordinates].index(name)
-    outside = np.flatnonzero(np.abs(test.true_error[:, index]) > _BAND * float(np.max(np.abs(test.reference[:, index]))))
-    return min(_SHOWN * float(test.times[outside[-1]]), float(test.times[-1])) if len(outside) else float(test.times[-1])
+    index = names_of(test.coordinates).index(name)
+    outside = np.flatnonzero(np.abs(test.true_error[:, index]) > _BAND * np.max(np.abs(test.reference[:, index])))
+    return float(min(_SHOWN * test.times[outside[-1]], test.times[-1]) if len(outside) else test.times[-1])
 
 
 def error_figure(test: Simulated) -> Any:
@@ -90,11 +90,11 @@ def error_figure(test: Simulated) -> Any:
         for axes, unit in zip(grid[:, 0], units, strict=True):
             chosen = [index for index, channel in enumerate(test.coordinates) if channel.unit == unit]
             error = test.true_error[:, chosen]
-            form = display_unit_of(unit, float(np.max(np.abs(error), initial=0.0)))
+            form = display_unit_of(unit, np.max(np.abs(error), initial=0.0))
             for index, column in zip(chosen, error.T, strict=True):
                 axes.plot(scaled, form.factor * column, color=SERIES[count % 7], linewidth=0.9, label=test.coordinates[index].name)
                 count += 1
-            axes.set(ylabel=to_typography(f"error [{form.unit}]"), xlim=(float(scaled[0]), float(scaled[-1])))
+            axes.set(ylabel=to_typography(f"error [{form.unit}]"), xlim=scaled[[0, -1]])
         legend_of_lines(figure, grid[:, 0])
         grid[-1, 0].set_xlabel(noun)
     return figure
@@ -114,11 +114,11 @@ def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: 
         grid = panels(figure, len(kinds), 1, Margins(left=0.62, top=0.3, down=0.14))
         for axes, unit in zip(grid[:, 0], kinds, strict=True):
             chosen = [index for index, each in enumerate(units) if each == unit]
-            form = display_unit_of(unit, float(np.max(rms[:, chosen])))
+            form = display_unit_of(unit, np.max(rms[:, chosen]))
             for index in chosen:
                 axes.semilogy(range(len(rms)), form.factor * rms[:, index], color=SERIES[index % 7], linewidth=1.0, label=names[index])
                 if floor is not None:
-                    axes.axhline(form.factor * float(floor[index]), color=SERIES[index % 7], linewidth=0.7, linestyle=":")
+                    axes.axhline(form.factor * floor[index], color=SERIES[index % 7], linewidth=0.7, linestyle=":")
             axes.set(ylabel=to_typography(f"rms error [{form.unit}]"), xlim=(0.0, len(rms) - 1.0))
             axes.xaxis.get_major_locator().set_params(integer=True)
             plain_ticks(axes.yaxis, steps=(1.0, 2.0, 5.0) if np.ptp(np.log10(rms[:, chosen])) < _FEW else (1.0,))
@@ -132,10 +132,9 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
 
     >>> from flexstage.show.figures.style import canvas
     """
-    names = [channel.name for channel in test.coordinates]
-    places = [names.index(name) for name in axes_shown]
+    places = [names_of(test.coordinates).index(name) for name in axes_shown]
     asked, error = test.reference[:, places], test.true_error[:, places]
-    size = float(np.max(np.ptp(asked, axis=0), initial=0.0))
+    size = np.max(np.ptp(asked, axis=0), initial=0.0)
     factor = magnification(size, error)
     forms = [display_unit_of(test.coordinates[place].unit, size) for place in places]
     factors = np.array([form.factor for form in forms])
@@ -165,12 +164,12 @@ def magnification(size: float, error: Array) -> float:
     >>> magnification(1.0, np.array([[0.001, 0.0]]))
     50.0
     """
-    largest = float(np.max(np.linalg.norm(error, axis=1), initial=0.0))
+    largest = np.max(np.linalg.norm(error, axis=1), initial=0.0)
     if largest == 0.0 or size == 0.0:
         return 1.0
     wanted = max(_OF_SIZE * size / largest, 1.0)
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
+    steps = np.array([1.0, 2.0, 5.0]) * 10.0 ** np.floor(np.log10(wanted))
+    return float(np.max(steps[steps <= wanted]))
 
 
 def _clock(times: Array) -> tuple[Array, str]:
