@@ -17,7 +17,7 @@ from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.models.envelope import Envelope, straight
 from flexstage.control.hysteresis.models.inverse import inverse
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.models.scaled import Stacks, scale_to_stacks
+from flexstage.control.hysteresis.models.scaled import scale_to_stacks
 from flexstage.control.hysteresis.models.shape import major_loop
 from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.models.linear.model import Channel
@@ -270,9 +270,7 @@ def test_a_stacks_loop_is_scaled_to_others():
     """Over other volts and with another stroke: the same loop, point by point, inner ones too."""
     bend = Envelope([-100.0, 400.0, 900.0], [-120.0, 450.0, 1000.0])
     model = PrandtlIshlinskii([0.0, 80.0, 200.0], [1e-7, 3e-8, 2e-8], bend, straight([1.0], 4e-6))
-    others = scale_to_stacks(
-        model, (-100.0, 900.0), Stacks(np.array([-100.0, -200.0]), np.array([900.0, 300.0]), np.array([150e-6, 60e-6]))
-    )
+    others = scale_to_stacks(model, (-100.0, 900.0), np.array([-100.0, -200.0]), np.array([900.0, 300.0]), np.array([150e-6, 60e-6]))
     shape = legs([0, 1000, 0, 700, 200, 900, 0])
     found = others.run(np.stack([shape - 100.0, 0.5 * shape - 200.0], axis=1))
     own, size = model.run(shape - 100.0), major_loop(model, (-100.0, 900.0))
@@ -283,8 +281,8 @@ def test_a_stacks_loop_is_scaled_to_others():
 def test_stacks_that_are_none_are_refused():
     model = PrandtlIshlinskii([0.0], [1e-7])
     with pytest.raises(DesignError, match=r"stack 1: invalid range or stroke \(got 5 V to 5 V"):
-        scale_to_stacks(model, RANGE, Stacks(np.array([0.0, 5.0]), np.array([1.0, 5.0]), np.array([1e-4, 0.0])))
+        scale_to_stacks(model, RANGE, np.array([0.0, 5.0]), np.array([1.0, 5.0]), np.array([1e-4, 0.0]))
     with pytest.raises(DesignError, match="wrong number of axes"):
-        scale_to_stacks(PrandtlIshlinskii(np.zeros((2, 1)), np.ones((2, 1))), RANGE, Stacks(np.zeros(1), np.ones(1), np.ones(1)))
+        scale_to_stacks(PrandtlIshlinskii(np.zeros((2, 1)), np.ones((2, 1))), RANGE, np.zeros(1), np.ones(1), np.ones(1))
     with pytest.raises(DesignError, match="no range"):
-        scale_to_stacks(model, (1.0, 0.0), Stacks(np.zeros(1), np.ones(1), np.ones(1)))
+        scale_to_stacks(model, (1.0, 0.0), np.zeros(1), np.ones(1), np.ones(1))

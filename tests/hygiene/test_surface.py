@@ -27,7 +27,7 @@ DEFINED_TWICE = """
 Amount Amplifier Axes Axis Band Bearing Bend Block Bounds Buckling Channel Code Combination Command Comparison Compensation Contribution
 Curve Draft Drive Elimination Ends Engine Fact Family Field Fit Free Grid Group Hardware Inertia Job Jobs Joint
 Judgement Kind Law Layout Limits Line Margins Matrix Modes Motion Motions Notch Numbers Outcome Part Peak Piece Place Plan Point
-Pose Problem Reach Reading Resolution Response Row Rule Run Scene Section Session Shape Side Simulated Slopes Solid Spectrum Spot Stacks
+Pose Problem Reach Reading Resolution Response Row Rule Run Scene Section Session Shape Side Simulated Slopes Solid Spectrum Spot
 Stage Start State Status Step Stream Stroke Superelement Surface Sweep System Table Values Variable Variant Verdict View Weights
 """
 """Public classes that several modules define, each under this name: the list only shrinks."""

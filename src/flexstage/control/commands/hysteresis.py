@@ -49,11 +49,10 @@ def hysteresis(  # noqa: PLR0913 (its options)
 
     With a step record, the command also fits the creep.
     """
-    records = [record] if step is None else [record, step]
     between = None if limits is None else _volts(limits)
     reader = RecordTexts(units=units, rate=rate, kind="record", arrays=arrays)
-    opened = [_open(each, reader) for each in records]
-    found = stack_test(opened[0], Channels(volts, stroke), step=None if step is None else opened[1], limits=between)
+    cycles, stepped = _open(record, reader), None if step is None else _open(step, reader)
+    found = stack_test(cycles, Channels(volts, stroke), step=stepped, limits=between)
     if output is not None:
         save(output, dumps_hysteresis(found.stack), "--output")
     page = partial(hysteresis_report, found)

@@ -48,10 +48,10 @@ def branches_of(volts: Array, least: float = _LEAST) -> list[Branch]:
     >>> [(each.first, each.last) for each in branches_of(np.array([0.0, 5.0, 10.0, 9.9, 10.0, 4.0, 0.0, 8.0]))]
     [(0.0, 10.0), (10.0, 0.0), (0.0, 8.0)]
     """
-    threshold = least * float(np.ptp(volts))
+    threshold = least * np.ptp(volts)
     turns, low, high, going = [0], 0, 0, 0
     for place in _extremes(volts):
-        value = float(volts[place])
+        value = volts[place]
         high = place if value > volts[high] else high
         low = place if value < volts[low] else low
         if going <= 0 and value - volts[low] >= threshold:
@@ -79,11 +79,8 @@ def record_findings(volts: Array, strokes: Array) -> list[Finding]:
     >>> record_findings(np.arange(100.0), 1e-7 * np.arange(100.0))[0].what
     'the voltage changes from 0 V to 99 V without reversal: the record cannot show hysteresis'
     """
-    for check in (_channel_findings, _column_findings, _branch_findings, _loop_findings):
-        found = list(check(volts, strokes))
-        if found:
-            return found
-    return []
+    checks = (_channel_findings, _column_findings, _branch_findings, _loop_findings)
+    return next((found for check in checks if (found := [*check(volts, strokes)])), [])
 
 
 def _channel_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
@@ -98,7 +95,7 @@ def _channel_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
         yield Finding("record", f"too few samples (got {len(volts)}, expected at least {_FEWEST})", "Record more samples")
     for name, values in (("volts", volts), ("stroke", strokes)):
         if not np.all(np.isfinite(values)):
-            place = int(np.argmin(np.isfinite(values)))
+            place = np.argmin(np.isfinite(values))
             yield Finding(name, f"sample {place} is {values[place]}", "Truncate the record before this sample, or correct the channel")
         elif np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
             yield Finding(
@@ -122,7 +119,7 @@ def _branch_findings(volts: Array, _: Array) -> Iterator[Finding]:
         return
     counts = np.array([branch.stop - branch.start + 1 for branch in branches])
     if np.any(counts < _FEWEST_A_BRANCH):
-        worst = int(np.argmin(counts))
+        worst = np.argmin(counts)
         what = f"{np.sum(counts < _FEWEST_A_BRANCH)} of {len(branches)} branches have fewer than {_FEWEST_A_BRANCH} samples"
         which = f"branch {worst + 1} from {branches[worst].first:g} V to {branches[worst].last:g} V has {counts[worst]}"
         yield Finding("volts", f"{what}: {which}", "Record more slowly, or sample faster")
@@ -135,7 +132,7 @@ def _branch_findings(volts: Array, _: Array) -> Iterator[Finding]:
 
 def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     major = [branch for branch in branches_of(volts)[1:] if branch.swing >= MAJOR * np.ptp(volts)]
-    size = float(np.ptp(strokes))
+    size = np.ptp(strokes)
     means = [_bin(volts, strokes, branch) for branch in major]
     risen = np.mean([np.sign(branch.last - branch.first) * (strokes[branch.stop] - strokes[branch.start]) for branch in major])
     if risen < 0.0:
@@ -145,12 +142,12 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     up, down = (
         np.nanmean([mean for branch, mean in zip(major, means, strict=True) if branch.rises == way], axis=0) for way in (True, False)
     )
-    ahead = float(np.mean((up - down)[1:-1])) / size
+    ahead = np.mean((up - down)[1:-1]) / size
     if ahead > _AHEAD:
         what = f"at equal voltage the stroke is {ahead:.1%} of its range larger on rising than on falling branches, so it leads the voltage"
         yield Finding("record", what, "Check for exchanged channels, or a delayed channel: the stroke of a stack lags the voltage")
-    drops = [float(np.max(np.maximum.accumulate(mean) - mean)) for mean in means]
-    worst = int(np.argmax(drops))
+    drops = [np.max(np.maximum.accumulate(mean) - mean) for mean in means]
+    worst = np.argmax(drops)
     if drops[worst] > _FALL * size:
         yield _fall(major[worst], means[worst], volts, size)
 
@@ -168,8 +165,8 @@ def _bin(volts: Array, strokes: Array, branch: Branch) -> Array:
 
 def _fall(branch: Branch, mean: Array, volts: Array, size: float) -> Finding:
     highest = np.maximum.accumulate(mean)
-    trough = int(np.argmax(highest - mean))
-    peak = int(np.argmax(mean[: trough + 1]))
+    trough = np.argmax(highest - mean)
+    peak = np.argmax(mean[: trough + 1])
     drop = highest[trough] - mean[trough]
     places = np.min(volts) + np.ptp(volts) * (np.array([peak, trough]) + 0.5) / _BINS
     what = f"on the branch from {branch.first:g} V to {branch.last:g} V the stroke is {1e6 * drop:.3g} um less at {places[1]:g} V"

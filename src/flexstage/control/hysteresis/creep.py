@@ -60,7 +60,7 @@ class Creep:
     times: Array
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "instant", freeze(np.atleast_1d(np.asarray(self.instant, dtype=float))))
+        object.__setattr__(self, "instant", freeze(np.array(self.instant, dtype=float, ndmin=1)))
         freeze_rows(self, "gains", "times")
         require(_findings(self))
 
@@ -123,27 +123,19 @@ def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 
     decades = np.log10(high / low)
     spread = np.logspace(np.log10(low) - 0.5, np.log10(high) + 0.5, 1 + int(np.ceil(per_decade * (decades + 1.0))))
     times = np.geomspace(low, high, 1 + int(40 * decades + 40))
-    instant, gains = _fit(law, times, spread)
-    creep = Creep(np.array([instant]), gains, spread)
+    columns = np.column_stack([np.ones_like(times), -np.expm1(-times[:, None] / spread)])
+    signs = np.concatenate([[1.0], np.full(len(spread), -1.0 if law.rate < 0.0 else 1.0)])
+    lower = np.concatenate([[-np.inf], np.zeros(len(spread))])
+    gains = signs * scipy.optimize.lsq_linear(columns * signs, law.at(times), (lower, np.inf), tol=1e-14).x
+    creep = Creep(gains[:1], gains[1:], spread)
     fine = np.geomspace(low, high, 10 * len(times))
     error = np.max(np.abs(creep.step_response(fine)[:, 0] - law.at(fine)))
     return CreepFit(creep, span, float(error))
-
-
-def _fit(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
-    """Gains g_0 and g_i for given tau_i; the g_i have the sign of the rate."""
-    columns = np.column_stack([np.ones_like(times), -np.expm1(-times[:, None] / spread)])
-    sign = -1.0 if law.rate < 0.0 else 1.0
-    lower = np.concatenate([[-np.inf], np.zeros(len(spread))])
-    solved = scipy.optimize.lsq_linear(
-        columns * np.concatenate([[1.0], np.full(len(spread), sign)]), law.at(times), (lower, np.inf), tol=1e-14
-    ).x
-    return float(solved[0]), sign * solved[1:]
 
 
 def _findings(creep: Creep) -> Iterator[Finding]:
     if creep.gains.shape != creep.times.shape or len(creep.instant) != len(creep.times):
         shapes = f"instant {creep.instant.shape}, gains {creep.gains.shape}, times {creep.times.shape}"
         yield Finding("creep", f"shapes do not match (got {shapes})", "Use (axes,), (axes, m) and (axes, m)")
-    elif not np.all(creep.times > 0.0) or not all(np.all(np.isfinite(each)) for each in (creep.instant, creep.gains, creep.times)):
+    elif not np.all(creep.times > 0.0) or not all(map(np.all, map(np.isfinite, (creep.instant, creep.gains, creep.times)))):
         yield Finding("creep", "a time constant is not positive, or a value is not finite", "Correct the values")

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import LENGTH, TIME
 from flexstage.control.hysteresis.creep import LogCreep
@@ -49,13 +49,19 @@ def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: flo
     times, volts, strokes = (np.asarray(each, dtype=float) for each in (times, volts, strokes))
     require(_step_findings(times, volts, strokes))
     first, last = _step(volts)
-    after, risen = times[last:] - times[last], strokes[last:] - float(np.mean(strokes[: first + 1]))
-    require(_span_findings(after, reference))
+    after, risen = times[last:] - times[last], strokes[last:] - np.mean(strokes[: first + 1])
+    if not reference > 0.0 or after[-1] < 10.0 * reference or np.sum(after >= reference) < _FEWEST:
+        what = f"ends too soon after the step (got {after[-1]:g} s, {np.sum(after >= reference)} samples after {reference:g} s)"
+        raise refuse("record", what, f"Record at least {10.0 * reference:g} s after the step, or use an earlier reference time")
     decades, means = _means(np.log10(np.maximum(after, 1e-300) / reference), risen)
     columns = np.column_stack([np.ones_like(decades), decades])
     stroke, slope = np.linalg.lstsq(columns, means, rcond=None)[0].tolist()
     rms = float(np.sqrt(np.mean((means - columns @ np.array([stroke, slope])) ** 2)))
-    require(_law_findings(stroke, slope, rms, float(decades[-1])))
+    if stroke == 0.0 or not np.isfinite(slope / stroke):
+        raise refuse("stroke", "no response to the step", "Check that voltage and stroke belong to the same stack")
+    if rms > _SCATTER * abs(slope) * decades[-1] and rms > 1e-4 * abs(stroke):
+        what = f"the rms deviation from the logarithmic law is {rms:.3g} m, for a creep of {slope * decades[-1]:.3g} m"
+        raise refuse("stroke", what, "Record longer, or with less drift and noise")
     return IdentifiedCreep(LogCreep(slope / stroke, reference), stroke, (reference, float(after[-1])), rms / abs(stroke))
 
 
@@ -70,27 +76,18 @@ def _step(volts: Array) -> tuple[int, int]:
 def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Finding]:
     if not (times.shape == volts.shape == strokes.shape and times.ndim == 1 and len(times) > _FEWEST):
         shapes = f"different lengths (got times {times.shape}, volts {volts.shape}, strokes {strokes.shape})"
-        yield Finding("record", shapes, f"Use one time, voltage and stroke for every sample, and more than {_FEWEST} samples")
-        return
-    if not all(np.all(np.isfinite(each)) for each in (times, volts, strokes)):
-        yield Finding("record", "a sample is not finite", "Truncate the record before this sample")
-        return
+        raise refuse("record", shapes, f"Use one time, voltage and stroke for every sample, and more than {_FEWEST} samples")
+    if not np.all(np.isfinite([times, volts, strokes])):
+        raise refuse("record", "a sample is not finite", "Truncate the record before this sample")
     if np.ptp(volts) == 0.0:
-        yield Finding("volts", f"no voltage step (got {volts[0]:g} V throughout)", "Use a record of the stroke after a voltage step")
-        return
+        raise refuse("volts", f"no voltage step (got {volts[0]:g} V throughout)", "Use a record of the stroke after a voltage step")
     places = _step(volts)
-    first, last = (float(times[place]) for place in places)
+    first, last = (times[place] for place in places)
     if places[1] - places[0] > 1 and last - first > _STILL * (times[-1] - times[0]):
         what = f"the voltage step lasts from {first:g} s to {last:g} s, more than {_STILL:.0%} of the record"
         yield Finding("volts", what, "Record one quick step, and keep the voltage constant after it")
     if np.any(np.diff(times) <= 0.0):
         yield Finding("times", "times must ascend", "Use the times of the samples")
-
-
-def _span_findings(after: Array, reference: float) -> Iterator[Finding]:
-    if not reference > 0.0 or after[-1] < 10.0 * reference or np.sum(after >= reference) < _FEWEST:
-        what = f"ends too soon after the step (got {after[-1]:g} s, {np.sum(after >= reference)} samples after {reference:g} s)"
-        yield Finding("record", what, f"Record at least {10.0 * reference:g} s after the step, or use an earlier reference time")
 
 
 def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
@@ -101,11 +98,3 @@ def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
     there = counts > 0
     along, strokes = (np.bincount(place, values[used])[there] / counts[there] for values in (decades, risen))
     return along, strokes
-
-
-def _law_findings(stroke: float, slope: float, rms: float, decades: float) -> Iterator[Finding]:
-    if stroke == 0.0 or not np.isfinite(slope / stroke):
-        yield Finding("stroke", "no response to the step", "Check that voltage and stroke belong to the same stack")
-    elif rms > _SCATTER * abs(slope) * decades and rms > 1e-4 * abs(stroke):
-        what = f"the rms deviation from the logarithmic law is {rms:.3g} m, for a creep of {slope * decades:.3g} m"
-        yield Finding("stroke", what, "Record longer, or with less drift and noise")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -18,28 +18,21 @@ _LEAST_WEIGHT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Form:
-    """Structure of a model: thresholds (n,) [V] of the plays, and knots (m,) [V] of the envelope before the plays."""
+class Fit:
+    """Fitted model: envelope with `knots` (m,) [V] and `slopes` (m-1,), then plays with `thresholds` (n,) [V] and `weights` (n,) [m/V].
+
+    The slopes have a mean of 1, which sets the scale of the thresholds. `offset` [m] is added to the strokes.
+    """
 
     thresholds: Array
     knots: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """Fitted model: `slopes` (m-1,) of the envelope before the plays, `weights` (n,) [m/V] of the plays, and `offset` [m].
-
-    The slopes have a mean of 1, which sets the scale of the thresholds.
-    """
-
-    form: Form
     slopes: Array
     weights: Array
     offset: float
 
     def effective(self, volts: Array) -> Array:
         """Compute the plays' input (k,) [V] for voltages (k,) [V] from the envelope. At the lowest knot, input and voltage are equal."""
-        return self.form.knots[0] + _ramps(volts, self.form.knots) @ self.slopes
+        return self.knots[0] + _ramps(volts, self.knots) @ self.slopes
 
     def strokes(self, plays: Array) -> Array:
         """Compute strokes (k,) [m] for play outputs (k, n)."""
@@ -51,32 +44,24 @@ class Fit:
         The shift changes input and outputs of the plays equally, and the offset of the model compensates for it. Strokes therefore change
         only while play outputs depend on the initial state.
         """
-        knots = self.form.knots
+        knots = self.knots
         values = knots[0] + np.concatenate([[0.0], np.cumsum(self.slopes * np.diff(knots))])
-        before = IDENTITY if len(knots) == 2 else Envelope(knots, values - np.interp(0.0, *_extrapolate(knots, values)))
-        shift = float(values[0] - before.at(knots[:1])[0])
-        after = straight([1.0], self.offset + shift * float(np.sum(self.weights)))
-        return PrandtlIshlinskii(self.form.thresholds, self.weights, before, after)
+        before = IDENTITY if len(knots) == 2 else Envelope(knots, values - Envelope(knots, values).at(np.zeros(1)))
+        shift = values[0] - before.at(knots[:1])[0]
+        after = straight([1.0], self.offset + shift * np.sum(self.weights))
+        return PrandtlIshlinskii(self.thresholds, self.weights, before, after)
 
 
-def _extrapolate(knots: Array, values: Array) -> tuple[Array, Array]:
-    """Knots and values with both end slopes extrapolated beyond 0 V."""
-    first, last = (np.diff(values)[place] / np.diff(knots)[place] for place in (0, -1))
-    far = abs(knots[0]) + abs(knots[-1])
-    ends = values[0] - first * far, values[-1] + last * far
-    return np.array([knots[0] - far, *knots, knots[-1] + far]), np.array([ends[0], *values, ends[1]])
-
-
-def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float = 0.5) -> Form:
+def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float = 0.5) -> Fit:
     """Choose the thresholds of `plays` plays, and the knots of an envelope with `pieces` pieces of equal width.
 
-    The thresholds are evenly spaced, from 0 up to but not including `reach` times the voltage range.
+    The thresholds are evenly spaced, from 0 up to but not including `reach` times the voltage range. The weights are zero.
 
     >>> form_of((0.0, 1000.0), 4, 1).thresholds.tolist()
     [0.0, 125.0, 250.0, 375.0]
     """
     span = volts[1] - volts[0]
-    return Form(reach * span * np.arange(plays) / plays, np.linspace(*volts, pieces + 1))
+    return Fit(reach * span * np.arange(plays) / plays, np.linspace(*volts, pieces + 1), np.ones(pieces), np.zeros(plays), 0.0)
 
 
 def play_outputs(inputs: Array, thresholds: Array) -> Array:
@@ -106,10 +91,10 @@ def known_from(inputs: Array, thresholds: Array) -> int:
     2
     """
     swing = np.maximum.accumulate(inputs) - np.minimum.accumulate(inputs)
-    return int(np.argmax(swing >= 2.0 * thresholds[-1])) if swing[-1] >= 2.0 * thresholds[-1] else len(inputs)
+    return int(np.searchsorted(swing, 2.0 * thresholds[-1]))
 
 
-def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
+def fit_form(volts: Array, strokes: Array, fit: Fit, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
     """Fit weights (0 or more) and envelope slopes (positive) to the samples `rows` of a record by least squares.
 
     Samples at which plays still depend on their initial state (`known_from`) are omitted.
@@ -123,9 +108,7 @@ def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: i
     >>> fit_form(volts, strokes, form_of((0.0, 100.0), 2, 1), np.arange(61) > 20).weights.round(12).tolist()
     [1e-07, 5e-08]
     """
-    pieces = len(form.knots) - 1
-    fit = Fit(form, np.ones(pieces), np.zeros(len(form.thresholds)), 0.0)
-    for _ in range(0 if pieces == 1 else rounds):
+    for _ in range(0 if len(fit.slopes) == 1 else rounds):
         plays, used = _known_plays(fit, volts, rows)
         before = fit.slopes
         fit = _with_weights(fit, plays[used], strokes[used])
@@ -138,16 +121,16 @@ def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: i
 
 def _known_plays(fit: Fit, volts: Array, rows: Array) -> tuple[Array, Array]:
     effective = fit.effective(volts)
-    known = np.arange(len(volts)) >= known_from(effective, fit.form.thresholds)
-    return play_outputs(effective, fit.form.thresholds), rows & known
+    known = np.arange(len(volts)) >= known_from(effective, fit.thresholds)
+    return play_outputs(effective, fit.thresholds), rows & known
 
 
 def _with_weights(fit: Fit, plays: Array, strokes: Array) -> Fit:
-    span = fit.form.knots[-1] - fit.form.knots[0]
-    size = float(np.ptp(strokes)) / span or 1.0
+    span = np.ptp(fit.knots)
+    size = np.ptp(strokes) / span or 1.0
     lower = np.concatenate([[_LEAST_WEIGHT], np.zeros(plays.shape[1] - 1), [-np.inf]])
     solved = _bounded_least_squares(np.column_stack([plays / span, np.ones(len(plays))]), strokes / (size * span), lower)
-    return Fit(fit.form, fit.slopes, size * solved[:-1], float(size * span * solved[-1]))
+    return replace(fit, weights=size * solved[:-1], offset=size * span * solved[-1])
 
 
 def _with_slopes(fit: Fit, volts: Array, plays: Array, strokes: Array, rows: Array) -> Fit:
@@ -155,15 +138,13 @@ def _with_slopes(fit: Fit, volts: Array, plays: Array, strokes: Array, rows: Arr
     moved = np.sign(np.diff(plays, axis=0, prepend=plays[:1]))
     last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(plays))[:, None], 0), axis=0)[rows]
     side = np.take_along_axis(moved, last, axis=0)
-    knots = fit.form.knots
-    ramps = _ramps(volts, knots)
-    columns = np.einsum("kij,i->kj", ramps[last], fit.weights)
-    known = fit.offset + knots[0] * np.sum(fit.weights) - (side * fit.form.thresholds) @ fit.weights
-    scale = float(np.sum(fit.weights)) * (knots[-1] - knots[0])
+    knots, span = fit.knots, np.ptp(fit.knots)
+    columns = np.einsum("kij,i->kj", _ramps(volts, knots)[last], fit.weights)
+    known = fit.offset + knots[0] * np.sum(fit.weights) - (side * fit.thresholds) @ fit.weights
+    scale = np.sum(fit.weights) * span
     lower = np.concatenate([np.full(len(fit.slopes), _LEAST_SLOPE), [-np.inf]])
     solved = _bounded_least_squares(np.column_stack([columns / scale, np.ones(len(columns))]), (strokes[rows] - known) / scale, lower)
-    slopes = solved[:-1] * (knots[-1] - knots[0]) / float(solved[:-1] @ np.diff(knots))
-    return Fit(fit.form, slopes, fit.weights, fit.offset)
+    return replace(fit, slopes=solved[:-1] * span / (solved[:-1] @ np.diff(knots)))
 
 
 def _ramps(volts: Array, knots: Array) -> Array:

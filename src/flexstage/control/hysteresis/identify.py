@@ -105,8 +105,8 @@ class _Search:
         for number in range(_FOLDS):
             kept = fold == number
             fit = fit_form(self.volts, self.strokes, form, ~kept, rounds=_ROUNDS)
-            error = fit.strokes(play_outputs(fit.effective(self.volts), form.thresholds)) - self.strokes
-            squares += float(np.sum(error[kept] ** 2))
+            error = fit.strokes(play_outputs(fit.effective(self.volts), fit.thresholds)) - self.strokes
+            squares += np.sum(error[kept] ** 2)
         self.trials.append(Trial(plays, pieces, reach, float(np.sqrt(squares / np.sum(known))) / self.size))
         return self.trials[-1]
 
@@ -124,9 +124,9 @@ class _Search:
 def _assess(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHysteresis:
     fit = search.fit(best)
     effective = fit.effective(search.volts)
-    plays = play_outputs(effective, fit.form.thresholds)
+    plays = play_outputs(effective, fit.thresholds)
     modelled = fit.strokes(plays)
-    known = known_from(effective, fit.form.thresholds)
+    known = known_from(effective, fit.thresholds)
     error = (modelled - search.strokes)[known:] / search.size
     model = fit.model()
     inner = int(np.sum([branch.swing < MAJOR * np.ptp(search.volts) for branch in search.branches]))

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.storage.store import write
 from flexstage.base.units.quantity import DISPLACEMENT, NOT_NEGATIVE, PIEZO_GAIN, POSITIVE, RATIO, TIME, VOLTAGE
 from flexstage.control.hysteresis.creep import LogCreep
@@ -82,7 +82,9 @@ class StackHysteresis:
         before = IDENTITY if self.envelope is None else Envelope(np.array(self.envelope.volts), np.array(self.envelope.effective))
         after = straight([1.0], self.offset)
         if self.outer is not None:
-            require(_outer_findings(self.offset))
+            if self.offset:
+                what = f"conflicts with the outer envelope, which has its own offset (got {self.offset:g} m)"
+                raise refuse("offset", what, "Omit the offset, or the outer envelope")
             after = Envelope(np.array(self.outer.plays), np.array(self.outer.strokes))
         return PrandtlIshlinskii(np.array(self.thresholds), np.array(self.weights), before, after)
 
@@ -90,11 +92,6 @@ class StackHysteresis:
     def log_creep(self) -> LogCreep | None:
         """Return the creep law, or None."""
         return None if self.creep is None else LogCreep(self.creep.rate, self.creep.reference)
-
-
-def _outer_findings(offset: float) -> list[Finding]:
-    what = f"conflicts with the outer envelope, which has its own offset (got {offset:g} m)"
-    return [Finding("offset", what, "Omit the offset, or the outer envelope")] if offset else []
 
 
 @check_arguments

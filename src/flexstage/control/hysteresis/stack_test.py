@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
@@ -130,52 +130,30 @@ def _samples(record: Record, chosen: tuple[Channel, Channel]) -> tuple[Array, Ar
 
 def _choose_channels(record: Record, channels: Channels) -> tuple[Channel, Channel]:
     """Channels of voltage and stroke."""
-    findings: list[Finding] = []
-    found = [
-        _choose_channel(record, wanted, findings)
-        for wanted in (_ChannelRequest("volts", "V", channels.volts), _ChannelRequest("stroke", "m", channels.stroke))
-    ]
-    require(findings)
-    volts, stroke = (each for each in found if each is not None)
+    found = [_choose_channel(record, "volts", "V", channels.volts), _choose_channel(record, "stroke", "m", channels.stroke)]
+    require(each for each in found if isinstance(each, Finding))
+    volts, stroke = (each for each in found if isinstance(each, Channel))
     if volts.name == stroke.name:
         raise refuse(record.source or "record", f"{volts.name} is selected both for volts and for stroke", "Select two channels")
     return volts, stroke
 
 
-@dataclass(frozen=True)
-class _ChannelRequest:
-    kind: str
-    unit: str
-    name: str | None
-
-
-def _choose_channel(record: Record, wanted: _ChannelRequest, findings: list[Finding]) -> Channel | None:
-    where = f"{record.source or 'record'}: {wanted.kind}"
-    if wanted.name is not None:
-        named = next((each for each in record.channels if each.name == wanted.name), None)
-        if named is None:
-            findings.append(Finding(where, f"there is no channel {wanted.name}", suggest_nearest(wanted.name, record.names)))
-            return None
-        findings += _unit_findings(where, named, wanted)
+def _choose_channel(record: Record, kind: str, unit: str, name: str | None) -> Channel | Finding:
+    """The named channel, or the only one in this unit; else the reason why there is none."""
+    where, (noun, example) = f"{record.source or 'record'}: {kind}", ("volts", "V") if unit == "V" else ("a unit of length", "um")
+    fitting = [each for each in record.channels if unit_problem(each.unit) is None and same_dimension(each.unit, unit)]
+    if name is None:
+        if len(fitting) == 1:
+            return fitting[0]
+        said = ", ".join(f"{each.name} [{each.unit or 'no unit'}]" for each in record.channels[:12])
+        what = f"{len(fitting) or 'none'} of the channels ({said}) {'are' if fitting else 'is'} in {noun}"
+        return Finding(where, what, f'Select one with --{kind}, and specify its unit, e.g. --units "NAME={example}"')
+    named = next((each for each in record.channels if each.name == name), None)
+    if named is None:
+        return Finding(where, f"there is no channel {name}", suggest_nearest(name, record.names))
+    if named in fitting:
         return named
-    fitting = [each for each in record.channels if unit_problem(each.unit) is None and same_dimension(each.unit, wanted.unit)]
-    if len(fitting) == 1:
-        return fitting[0]
-    said = ", ".join(f"{each.name} [{each.unit or 'no unit'}]" for each in record.channels[:12])
-    count = "none" if not fitting else f"{len(fitting)}"
-    what = f"{count} of the channels ({said}) {'is' if not fitting else 'are'} in {'volts' if wanted.unit == 'V' else 'a unit of length'}"
-    findings.append(Finding(where, what, f'Select one with --{wanted.kind}, and specify its unit, e.g. --units "NAME={_example(wanted)}"'))
-    return None
-
-
-def _unit_findings(where: str, named: Channel, wanted: _ChannelRequest) -> Iterator[Finding]:
-    problem = unit_problem(named.unit)
-    if problem is not None:
-        yield Finding(where, f"{named.name}: {problem}", f'Specify the unit, e.g. --units "{named.name}={_example(wanted)}"')
-    elif not same_dimension(named.unit, wanted.unit):
-        what = f"{named.name} is in {named.unit} (expected {'volts' if wanted.unit == 'V' else 'a unit of length'})"
-        yield Finding(where, what, "Check whether the channels are exchanged, or correct the unit with --units")
-
-
-def _example(wanted: _ChannelRequest) -> str:
-    return "V" if wanted.unit == "V" else "um"
+    if (problem := unit_problem(named.unit)) is not None:
+        return Finding(where, f"{name}: {problem}", f'Specify the unit, e.g. --units "{name}={example}"')
+    what = f"{name} is in {named.unit} (expected {noun})"
+    return Finding(where, what, "Check whether the channels are exchanged, or correct the unit with --units")

@@ -20,7 +20,6 @@ from flexstage.control.hysteresis.models.bouc_wen import BoucWen, bouc_wen
 from flexstage.control.hysteresis.models.inverse import hysteresis_inverse, inverse_state
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.models.protocol import Hysteresis
-from flexstage.control.hysteresis.models.scaled import Stacks as Ranges
 from flexstage.control.hysteresis.models.scaled import scale_to_stacks
 from flexstage.control.hysteresis.models.shape import Range, major_loop
 from flexstage.control.hysteresis.stack import load_hysteresis
@@ -116,7 +115,7 @@ def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
     ranges = list(zip(low.tolist(), high.tolist(), strict=True))
     strokes = np.asarray(electric.gain, dtype=float) * (high - low)
     known, ends, law = _known_model(given)
-    model = scale_to_stacks(known, ends or ranges[0], Ranges(low, high, strokes))
+    model = scale_to_stacks(known, ends or ranges[0], low, high, strokes)
     width = loop_widths(model, ranges)
     kind = given.plant or (StackKind.BOUC_WEN if given.file is None else StackKind.MODEL)
     plant = model if kind is StackKind.MODEL else _bouc_wen(strokes, ranges, width if given.width is None else given.width)

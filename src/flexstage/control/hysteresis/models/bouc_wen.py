@@ -105,8 +105,8 @@ def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.
     beta = sharpness / span
     largest = 0.5 * (1.0 + skew)
     unit = major_loop(_stack(1.0, largest, beta, skew), volts, count=201, cycles=6)
-    lagging = span - float(unit.stroke[0])
-    lag = stroke * width / float(unit.width[0] * unit.stroke[0])
+    lagging = span - unit.stroke[0]
+    lag = stroke * width / (unit.width[0] * unit.stroke[0])
     gain = (stroke + lag * lagging) / span
     return _stack(gain, lag * largest, beta, skew)
 

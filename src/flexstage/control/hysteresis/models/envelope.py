@@ -15,7 +15,7 @@ from flexstage.base.number import Array, freeze
 def freeze_rows(record: Any, *names: str) -> None:
     """Convert the named arrays of a frozen dataclass to read-only arrays (axes, m)."""
     for name in names:
-        object.__setattr__(record, name, freeze(np.atleast_2d(np.asarray(getattr(record, name), dtype=float))))
+        object.__setattr__(record, name, freeze(np.array(getattr(record, name), dtype=float, ndmin=2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +54,7 @@ class Envelope:
         if self is IDENTITY:
             return np.asarray(arguments, dtype=float)
         beyond = np.asarray(arguments, dtype=float)[..., None] - self.knots[:, :-1]
-        if beyond.shape[-1] > 1:
-            np.maximum(beyond[..., 1:], 0.0, out=beyond[..., 1:])
+        np.maximum(beyond[..., 1:], 0.0, out=beyond[..., 1:])
         return self.values[:, 0] + np.vecdot(self.changes, beyond)
 
 
@@ -67,7 +66,7 @@ def _findings(envelope: Envelope) -> Iterator[Finding]:
             f"different lengths (got knots {knots.shape}, values {values.shape})",
             "Use equal numbers of knots and values, at least two",
         )
-    elif not np.all(np.isfinite(knots)) or not np.all(np.isfinite(values)):
+    elif not np.all(np.isfinite([knots, values])):
         yield Finding("envelope", "a knot or a value is not finite", "Correct the knots and values")
     else:
         for axis, knot in np.argwhere(np.diff(knots) <= 0.0):

@@ -52,8 +52,7 @@ class PrandtlIshlinskii(Hysteresis):
 
     def start(self, value: Array) -> Array:
         """Return the n play outputs (axes, n), initially all 0, after a monotonic change of the input to a value (axes,)."""
-        effective = self.before.at(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[:, None]
-        return np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, 0.0))
+        return self.step(np.zeros(1), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
         """Return the next play outputs (axes, n) and the output (axes,) for the next input (axes,)."""
@@ -71,7 +70,7 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
             "Use equal numbers of thresholds and weights, at least one",
         )
         return
-    if not np.all(np.isfinite(thresholds)) or not np.all(np.isfinite(weights)):
+    if not np.all(np.isfinite([thresholds, weights])):
         yield Finding("hysteresis", "a threshold or a weight is not finite", "Correct the values")
     for axis in np.flatnonzero(thresholds[:, 0] != 0.0):
         what = f"the first threshold of axis {axis} must be 0 (got {thresholds[axis, 0]:g})"
@@ -79,8 +78,8 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
     for axis, place in np.argwhere(np.diff(thresholds) <= 0.0):
         what = f"thresholds of axis {axis} must ascend (got {thresholds[axis, place + 1]:g} after {thresholds[axis, place]:g})"
         yield Finding("thresholds", what, "Sort the thresholds")
-    for name, envelope in (("before", model.before), ("after", model.after)):
-        if envelope.axes not in (1, model.axes):
+    for name in ("before", "after"):
+        if (envelope := getattr(model, name)).axes not in (1, model.axes):
             yield Finding(
                 f"envelope {name}",
                 f"wrong number of axes (got {envelope.axes}, expected {model.axes}, like the plays)",

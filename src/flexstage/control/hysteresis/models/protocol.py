@@ -65,6 +65,6 @@ def freeze_by_axis(model: Any) -> None:
     [4e-08, 4e-08]
     """
     names = [each.name for each in fields(model)]
-    arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(getattr(model, name), dtype=float)) for name in names))
+    arrays = np.broadcast_arrays(*(np.array(getattr(model, name), dtype=float, ndmin=1) for name in names))
     for name, value in zip(names, arrays, strict=True):
         object.__setattr__(model, name, freeze(value))

@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.number import Array
 from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.control.show.figures.frequency import legend_above
 from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context
 
 _DATA, _MODEL, _UNDONE = "#9aa5b1", SERIES[0], SERIES[2]
-_POINTS = 900
 
 
 def stack_figure(test: StackTest) -> Any:
@@ -24,8 +22,8 @@ def stack_figure(test: StackTest) -> Any:
     3
     """
     found = test.hysteresis
-    form = display_unit_of("m", float(np.max(np.abs(found.strokes))))
-    rows = _drawn_rows(found.volts, test.valid_samples)
+    form = display_unit_of("m", np.max(np.abs(found.strokes)))
+    rows = test.valid_samples
     with style_context():
         figure = canvas(FULL, 2.6)
         axes = panels(figure, 1, 3, Margins(left=0.52, top=0.32, across=0.62))[0]
@@ -41,11 +39,3 @@ def stack_figure(test: StackTest) -> Any:
         for panel in (axes[0], axes[2]):
             legend_above(panel, 2)
     return figure
-
-
-def _drawn_rows(volts: Array, kept: Array) -> Array:
-    """Indices of about so many samples, with all turning points."""
-    even = kept[:: max(1, len(kept) // _POINTS)]
-    turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(volts))) != 0.0)
-    wanted = turns[turns >= kept[0]] if len(turns) < _POINTS else turns[:0]
-    return np.unique(np.concatenate([even, wanted, kept[-1:]]))

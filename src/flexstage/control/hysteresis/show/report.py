@@ -7,8 +7,7 @@ from flexstage.control.hysteresis.show.figures import stack_figure
 from flexstage.control.hysteresis.show.tables import stack_tables
 from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.show.display import percent
-from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Head, Headline, Picture, Prose, page, section
+from flexstage.show.page import Head, Headline, Prose, page, picture, section
 from flexstage.show.tables.caveats import warning_table
 
 _METHOD = (
@@ -25,13 +24,11 @@ def hysteresis_report(test: StackTest) -> str:
     >>> hysteresis_report(example_test())[:15]
     '<!doctype html>'
     """
-    drawn = to_svg(
-        stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the voltage of the inverse model"
-    )
+    description = "Loops of the stack with the model, the model's error, and the voltage of the inverse model"
     caption = "Grey: record. Blue: model and its error. Green: voltage of the inverse model for the recorded strokes."
     stack, plays = stack_tables(test)
     sections = [
-        section("Hysteresis", [Picture(drawn, caption), stack, Prose(_METHOD)]),
+        section("Hysteresis", [picture(stack_figure(test), "stack", description, caption), stack, Prose(_METHOD)]),
         section("Warnings", [warning_table(test.hysteresis.warnings)]),
         section("Model", [plays]),
     ]
