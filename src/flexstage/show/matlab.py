@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterable
 from itertools import product
 from typing import Any
 
@@ -82,7 +83,7 @@ def _sheet(sheet: Sheet) -> dict[str, Any]:
 
 def _column(values: tuple[Any, ...]) -> Any:
     numbers = all(each is None or isinstance(each, NUMBERS) for each in values)
-    return np.array([np.nan if each is None else each for each in values]) if numbers else _cells(map(_words, values))
+    return np.array([np.nan if each is None else each for each in values]) if numbers else cells(map(_words, values))
 
 
 def _words(value: Any) -> str:
@@ -120,15 +121,15 @@ def mat_variables(analysis: Analysis) -> dict[str, Any]:
         variables |= {
             "frequencies_hz": analysis.modes.frequencies,
             "platform_modes": np.array(analysis.modes.platform, dtype=float) + 1.0,
-            "mode_names": _cells(analysis.modes.names),
+            "mode_names": cells(analysis.modes.names),
         }
-    return {**variables, "notes": _cells(notes)}
+    return {**variables, "notes": cells(notes)}
 
 
 def _matrix_variables(name: str, matrix: Matrix) -> dict[str, Any]:
     shape = (len(matrix.rows), len(matrix.columns))
     unit = matrix.unit if isinstance(matrix.unit, str) else np.array(matrix.unit, dtype=object).reshape(shape)
-    return {name: matrix.values, f"{name}_rows": _cells(matrix.rows), f"{name}_columns": _cells(matrix.columns), f"{name}_unit": unit}
+    return {name: matrix.values, f"{name}_rows": cells(matrix.rows), f"{name}_columns": cells(matrix.columns), f"{name}_unit": unit}
 
 
 def _model(model: LinearModel) -> dict[str, Any]:
@@ -139,10 +140,10 @@ def _model(model: LinearModel) -> dict[str, Any]:
         "C": model.output,
         "D": model.feedthrough,
         **({} if model.inertial is None else {"Mu": model.inertial}),
-        "coordinates": _cells(model.coordinates),
-        "coordinate_units": _cells([_coordinate_unit(name.rpartition(".")[2]) for name in model.coordinates]),
-        **_channels("input", model.inputs),
-        **_channels("output", model.outputs),
+        "coordinates": cells(model.coordinates),
+        "coordinate_units": cells([_coordinate_unit(name.rpartition(".")[2]) for name in model.coordinates]),
+        **channel_variables("input", model.inputs),
+        **channel_variables("output", model.outputs),
     }
 
 
@@ -151,8 +152,9 @@ def _coordinate_unit(component: str) -> str:
     return "m kg^0.5" if component.startswith("mode") else "rad" if component.startswith("r") else "m"
 
 
-def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
-    return {f"{kind}s": _cells([each.name for each in channels]), f"{kind}_units": _cells([each.unit for each in channels])}
+def channel_variables(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
+    """Return names and units of the channels of a kind as variables of a MATLAB file."""
+    return {f"{kind}s": cells([each.name for each in channels]), f"{kind}_units": cells([each.unit for each in channels])}
 
 
 def _state_space(model: LinearModel, notes: list[str]) -> dict[str, Any]:
@@ -165,9 +167,10 @@ def _state_space(model: LinearModel, notes: list[str]) -> dict[str, Any]:
         notes.append(f"state_space: {error}")
         return {}
     space = state_space(model, ports(model, outputs, [each.name for each in model.inputs]), law)
-    cells = {key: _cells(value) if isinstance(value, list) else value for key, value in space.to_dict().items()}
-    return {"state_space": cells}
+    named = {key: cells(value) if isinstance(value, list) else value for key, value in space.to_dict().items()}
+    return {"state_space": named}
 
 
-def _cells(texts: Any) -> Any:
+def cells(texts: Iterable[str]) -> Any:
+    """Return texts as a column of cells of a MATLAB file; invisible characters are escaped."""
     return np.array([printable(each) for each in texts], dtype=object).reshape(-1, 1)

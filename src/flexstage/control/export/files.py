@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import scipy
 
 from flexstage.base.arguments import check_arguments
@@ -30,6 +29,7 @@ from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.run import simulate
 from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
+from flexstage.show.matlab import cells, channel_variables
 
 _TESTED = 300
 ENDINGS = {
@@ -204,6 +204,7 @@ def plant_file(given: Plant) -> bytes:
 def path_file(commanded: Array, step: float, coordinates: tuple[Channel, ...]) -> str:
     """Generate a CSV file of a trajectory (n, f) of f coordinates, sampled every `step` [s]: times, then coordinates with units.
 
+    >>> import numpy as np
     >>> path_file(np.array([[0.0], [1e-6]]), 1e-4, (Channel("x", "m"),)).splitlines()
     ['time [s],x [m]', '0,0', '0.0001,1e-06']
     """
@@ -217,18 +218,10 @@ def _system(system: System, states: tuple[str, ...]) -> dict[str, Any]:
     return {
         **{name: getattr(system, name) for name in "ABCD"},
         "step": system.step or 0.0,
-        "states": _cells(named),
-        **_channels("input", system.inputs),
-        **_channels("output", system.outputs),
+        "states": cells(named),
+        **channel_variables("input", system.inputs),
+        **channel_variables("output", system.outputs),
     }
-
-
-def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
-    return {f"{kind}s": _cells(each.name for each in channels), f"{kind}_units": _cells(each.unit for each in channels)}
-
-
-def _cells(texts: Any) -> Any:
-    return np.array([printable(each) for each in texts], dtype=object).reshape(-1, 1)
 
 
 def _suffix_findings(path: str | os.PathLike[str], suffix: str) -> Path:

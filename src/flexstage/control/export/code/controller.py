@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from flexstage.control.export.code.hysteresis import hysteresis_inverse, hysteresis_step
@@ -142,7 +144,7 @@ def limit_settings(given: Machine) -> tuple[ProgramSetting, ...]:
 
 def bounded(setting: ProgramSetting, precision: Precision) -> ProgramSetting:
     """Return a setting with its numbers limited to the finite range of a number type."""
-    return ProgramSetting(setting.field, np.clip(setting.values, -precision.largest, precision.largest), setting.meaning)
+    return replace(setting, values=np.clip(setting.values, -precision.largest, precision.largest))
 
 
 def _tables(given: Machine, precision: Precision, *, fixed: bool) -> list[str]:

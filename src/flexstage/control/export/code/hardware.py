@@ -68,11 +68,11 @@ def hardware_code(
         states=controller_states(given, core),
         code=controller_part(given, core, "in->reading", precision, fixed=False),
         settings=tuple(bounded(each, precision) for each in (*core.settings, *limit_settings(given))),
+        functions=(_setter(identifier(name), given.step),) if core.settings else (),
     )
-    program = replace(program, functions=(_setter(program),)) if core.settings else program
     program = program if legs is None else legs_beside(program, given, legs, precision)
     state = precision.bytes * sum(math.prod(each.sizes) for each in program.states) + 4
-    parameters = precision.bytes * sum(len(each.values) for each in program.settings or ()) + 4
+    parameters = precision.bytes * sum(len(each.values) for each in program.settings) + 4
     program = replace(program, about=_about(given, program, precision, about, memory=(state, parameters)))
     return Hardware(
         header=typed(program.header, precision),
@@ -98,14 +98,13 @@ def _about(given: Machine, program: Program, precision: Precision, about: str, *
     )
 
 
-def _setter(program: Program) -> ProgramFunction:
+def _setter(name: str, step: float) -> ProgramFunction:
     """Function that changes the gains of a loop."""
-    name, half = program.name, number(0.5 * program.step)
     gains = "int loop, double proportional, double integral, double derivative"
     body = (
         "const double rate = lead[loop] * (state->e[loop] - state->d[loop]);",
         "state->x[loop] += (set->proportional[loop] - proportional) * state->e[loop];",
-        f"state->x[loop] += (set->integral[loop] - integral) * {half} * state->e[loop];",
+        f"state->x[loop] += (set->integral[loop] - integral) * {number(0.5 * step)} * state->e[loop];",
         "state->x[loop] += (set->derivative[loop] - derivative) * rate;",
         "set->proportional[loop] = proportional;",
         "set->integral[loop] = integral;",
@@ -119,8 +118,8 @@ def _replay(given: Machine, tested: Simulated, name: str, precision: Precision, 
     """Program that replays a simulated loop: largest stroke deviation, and a hash of all output bits; then tensions of the legs."""
     rows, upper = len(tested.times), name.upper()
     f, g, m = len(given.names), len(given.gauges), len(given.actuators)
-    scale = max(float(np.max(np.abs(tested.given))), 1e-300)
-    allowed = precision.tolerance + 1.01 * float(np.max(given.amplifiers.step)) / scale
+    scale = max(np.max(np.abs(tested.given)), 1e-300)
+    allowed = precision.tolerance + 1.01 * np.max(given.amplifiers.step) / scale
     return [
         *comment(f"A loop of {rows} samples simulated by flexstage: {name}_worst must be at most {allowed:.3g} of the largest stroke."),
         f'#include "{name}.h"',

@@ -24,7 +24,7 @@ def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str
     >>> state.sizes, lines[-1]
     ((1, 2), '}')
     """
-    start = np.asarray(model.start(bias))
+    start = model.start(bias)
     head = [*table(f"{name}_rest", start)]
     if isinstance(model, PrandtlIshlinskii):
         every = f"i = 0; i < {model.thresholds.shape[1]}; i++"

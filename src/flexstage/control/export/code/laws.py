@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised, filtered
-from flexstage.control.controllers.law import Law, tracking_rate
+from flexstage.control.controllers.law import tracking_rate
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import with_prefilters
@@ -19,7 +20,7 @@ from flexstage.control.export.code.program import ProgramSetting
 from flexstage.control.export.code.text import number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.parts import Parts, parts
-from flexstage.control.systems.system import System, block_matrices, static
+from flexstage.control.systems.system import System, block_matrices, names_of, select, static
 from flexstage.models.linear.model import Channel
 
 
@@ -45,8 +46,9 @@ class Core:
 
 def law_as_c(given: Machine, law: Decentralised | None) -> Core:
     """Generate the controller of a loop as C code: individual loops for PI and PID, modal form for any other controller."""
-    if law is not None and all(isinstance(each, (PI, PID)) for each in law.laws):
-        return _single_loops(given, law)
+    laws = [] if law is None else [_as_pid(each) for each in law.laws if isinstance(each, (PI, PID))]
+    if law is not None and len(laws) == len(law.laws):
+        return _single_loops(given, law, laws)
     linear = parts(replace(given, controller=modal_form(given.controller)))
     core, begin = matrix_core(linear), product("begin", "state->z", _start(linear), len(linear.controller))
     return replace(core, tables=(*core.tables, *begin.tables), begin=begin.body)
@@ -78,15 +80,15 @@ def _start(linear: Parts) -> list[tuple[Array, str]]:
     entry = np.hstack([linear.from_reference, linear.from_pose])
     rest, lead = np.zeros_like(entry), np.zeros((len(A), len(linear.command)))
     rest[fast] = np.linalg.lstsq(np.eye(len(fast)) - A[np.ix_(fast, fast)], entry[fast], rcond=None)[0]
-    lead[slow] = np.linalg.pinv(linear.command[:, slow]) if np.any(slow) else 0.0
+    lead[slow] = np.linalg.pinv(linear.command[:, slow])
     begin = rest - lead @ (linear.command @ rest + np.hstack([linear.command_r, linear.command_q]))
     return [(lead, "state->last"), (begin[:, :f], "state->wanted"), (begin[:, f:], "out->pose")]
 
 
-def _single_loops(given: Machine, law: Decentralised) -> Core:
+def _single_loops(given: Machine, law: Decentralised, laws: list[PID]) -> Core:
     """Single loops: gains are settings; notches, prefilters and feedforward are fixed."""
-    step, sense, drive = given.step, np.asarray(law.loops.sense), np.asarray(law.loops.drive)
-    behind, ahead, laws = _notches(law, step), _ahead(law, step), [_as_pid(each) for each in law.laws]
+    step, sense, drive = given.step, law.loops.sense, law.loops.drive
+    behind, ahead = _notches(law, step), _ahead(law, step)
     k, f, m, n, s = len(laws), len(given.names), len(given.actuators), len(behind.A), len(ahead.A)
     back, half, whole = np.linalg.pinv(drive), number(0.5 * step), number(step)
     shaped = product("ahead", "ahead", [(ahead.C, "state->f"), (ahead.D, "state->wanted")], f + m)
@@ -145,17 +147,19 @@ def _single_loops(given: Machine, law: Decentralised) -> Core:
 
 def _settled(system: System) -> Array:
     """Equilibrium states (s, m) of a system for unit inputs: (I - A)^-1 B."""
-    return np.linalg.solve(np.eye(len(system.A)) - system.A, system.B) if len(system.A) else np.zeros_like(system.B)
+    return np.linalg.solve(np.eye(len(system.A)) - system.A, system.B)
 
 
 def _gains(law: Decentralised, laws: list[PID], step: float) -> tuple[ProgramSetting, ...]:
     """Settings that may change at run time, with their units."""
-    named = f"proportional gains of the loops {', '.join(law.loops.names)} [1]"
+    meanings = {
+        "proportional": f"proportional gains of the loops {', '.join(law.loops.names)} [1]",
+        "integral": "integral gains [1/s]",
+        "derivative": "derivative gains [s]",
+    }
     follows = [step * tracking_rate(each.tracking_time, step) if each.integral else 0.0 for each in laws]
     return (
-        ProgramSetting("proportional", np.array([each.proportional for each in laws]), named),
-        ProgramSetting("integral", np.array([each.integral for each in laws]), "integral gains [1/s]"),
-        ProgramSetting("derivative", np.array([each.derivative for each in laws]), "derivative gains [s]"),
+        *(ProgramSetting(name, np.array([getattr(each, name) for each in laws]), meaning) for name, meaning in meanings.items()),
         ProgramSetting("tracking", np.array(follows), "anti-windup: correction per sample over (applied - commanded)"),
     )
 
@@ -167,13 +171,9 @@ def _derivative_tables(laws: list[PID], step: float) -> tuple[str, ...]:
     return (*table("slow", slow), *table("lead", corners / (1.0 + 0.5 * corners * step)))
 
 
-def _as_pid(law: Law) -> PID:
+def _as_pid(law: PI | PID) -> PID:
     """PI as a PID without derivative."""
-    if isinstance(law, PI):
-        return PID(law.proportional, law.integral, 0.0, 1.0, law.tracking)
-    if isinstance(law, PID):
-        return law
-    raise TypeError(law)
+    return law if isinstance(law, PID) else PID(law.proportional, law.integral, 0.0, 1.0, law.tracking)
 
 
 def _notches(law: Decentralised, step: float) -> System:
@@ -190,13 +190,9 @@ def _ahead(law: Decentralised, step: float) -> System:
     """Prefilters and feedforward: from the reference to the additions to errors and commands."""
     coordinates = law.loops.coordinates
     f, m = len(coordinates.names), len(coordinates.actuators)
-    inputs = tuple(Channel(f"error.{name}", "m") for name in coordinates.names)
-    wanted = tuple(Channel(f"reference.{name}", "m") for name in coordinates.names)
+    wanted = coordinates.motions("reference.")
     outputs = tuple(Channel(f"out{place}", "m") for place in range(f + m))
     forward = np.zeros((m, f)) if law.feedforward is None else np.asarray(law.feedforward)
-    plain = static(
-        np.vstack([np.hstack([np.eye(f), np.zeros((f, f))]), np.hstack([np.zeros((m, f)), forward])]), (*inputs, *wanted), outputs, step
-    )
-    whole = with_prefilters(plain, law.prefilters, np.asarray(law.loops.sense), coordinates)
-    columns = [whole.input_names.index(channel.name) for channel in wanted]
-    return replace(whole, B=whole.B[:, columns], D=whole.D[:, columns], inputs=wanted)
+    plain = static(scipy.linalg.block_diag(np.eye(f), forward), (*coordinates.motions("error."), *wanted), outputs, step)
+    whole = with_prefilters(plain, law.prefilters, law.loops.sense, coordinates)
+    return select(whole, names_of(wanted), whole.output_names)

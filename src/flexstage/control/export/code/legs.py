@@ -128,7 +128,7 @@ def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Pr
     return replace(
         outer,
         states=(*outer.states, *_states(given, legs)),
-        settings=(*(outer.settings or ()), *(bounded(each, precision) for each in _settings(given, legs))),
+        settings=(*outer.settings, *(bounded(each, precision) for each in _settings(given, legs))),
         functions=(*outer.functions, ProgramFunction(call, body, notes)),
     )
 
@@ -200,5 +200,5 @@ def _swept(given: Machine, legs: SampledLegs) -> tuple[Array, Array]:
     tensions = np.sin(0.1 * np.pi * times**2 / _SWEPT + np.arange(len(legs.gains))) / legs.gains
     wanted = np.zeros((_SWEPT, len(given.actuators)))
     wanted[:, _places(given, legs)] = legs.strokes(tensions)
-    size = _LARGEST / float(np.max(np.abs(wanted)))
+    size = _LARGEST / np.max(np.abs(wanted))
     return size * tensions, size * wanted

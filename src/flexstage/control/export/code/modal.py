@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.systems.system import System
@@ -28,33 +29,16 @@ def modal_form(given: System) -> System:
     """
     if not len(given.A):
         return given
+    columns, blocks = list[Array](), list[list[list[float]]]()
     values, vectors = np.linalg.eig(given.A)
-    basis = _real_basis(values, vectors)
-    if np.linalg.cond(basis) > _WORST:
-        return given
-    back = np.linalg.inv(basis)
-    return replace(given, A=_blocks(values), B=back @ given.B, C=given.C @ basis)
-
-
-def _real_basis(values: Array, vectors: Array) -> Array:
-    """Real parts, followed by imaginary parts for pairs; only the first of a pair is used."""
-    columns: list[Array] = []
     for value, vector in zip(values, vectors.T, strict=True):
         if value.imag == 0.0:
             columns.append(vector.real)
-        elif value.imag > 0.0:
+            blocks.append([[value.real]])
+        elif value.imag > 0.0:  # only the first of a pair
             columns += [np.sqrt(2.0) * vector.real, np.sqrt(2.0) * vector.imag]
-    return np.stack(columns, axis=-1)
-
-
-def _blocks(values: Array) -> Array:
-    """Diagonal blocks of A in the real basis."""
-    found, row = np.zeros((len(values), len(values))), 0
-    for value in values:
-        if value.imag == 0.0:
-            found[row, row] = value.real
-            row += 1
-        elif value.imag > 0.0:
-            found[row : row + 2, row : row + 2] = [[value.real, value.imag], [-value.imag, value.real]]
-            row += 2
-    return found
+            blocks.append([[value.real, value.imag], [-value.imag, value.real]])
+    basis = np.stack(columns, axis=-1)
+    if np.linalg.cond(basis) > _WORST:
+        return given
+    return replace(given, A=scipy.linalg.block_diag(*blocks), B=np.linalg.inv(basis) @ given.B, C=given.C @ basis)

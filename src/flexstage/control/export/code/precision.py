@@ -18,11 +18,6 @@ class Precision(Enum):
     DOUBLE = "float64"
 
     @property
-    def word(self) -> str:
-        """C name of the type."""
-        return "float" if self is Precision.SINGLE else "double"
-
-    @property
     def bytes(self) -> int:
         """Size of a number [bytes]."""
         return np.dtype(self.value).itemsize

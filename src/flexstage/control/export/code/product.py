@@ -51,14 +51,13 @@ def product(name: str, target: str, terms: Iterable[Term], size: int) -> Code:
     >>> product("seen", "y", [(np.array([[2.0, 0.0], [0.0, -1.0]]), "x")], 2).body
     ('y[0] = 2.0 * x[0];', 'y[1] = -x[1];')
     """
-    used = [(np.asarray(matrix), vector) for matrix, vector in terms if np.any(matrix)]
-    counts = [int(np.count_nonzero(matrix)) for matrix, _ in used]
-    is_dense = [count > _FEW and count > _SPARSE * matrix.size for count, (matrix, _) in zip(counts, used, strict=True)]
-    sparse = [term for term, dense in zip(used, is_dense, strict=True) if not dense]
+    used = [term for term in terms if np.any(term[0])]
+    sparse = [term for term in used if not _is_dense(term[0])]
+    dense = [term for term in used if _is_dense(term[0])]
     body = [line for row in range(size) for line in wrap(f"{target}[{row}] = {_sum(sparse, row)};")]
     tables: list[str] = []
     groups = -(-size // _ROWS)
-    for place, (matrix, vector) in enumerate(term for term, dense in zip(used, is_dense, strict=True) if dense):
+    for place, (matrix, vector) in enumerate(dense):
         padded = np.zeros((groups * _ROWS, matrix.shape[1]))
         padded[:size] = matrix
         tables += table(f"{name}_{place}", padded.reshape(groups, _ROWS, -1).transpose(0, 2, 1).reshape(-1, _ROWS))
@@ -69,15 +68,19 @@ def product(name: str, target: str, terms: Iterable[Term], size: int) -> Code:
             f"    for (int row = 0; row < {size}; row++) {target}[row] += sum[row];",
             "}",
         ]
-    flops = sum(2 * (matrix.size if dense else count) for count, dense, (matrix, _) in zip(counts, is_dense, used, strict=True))
-    return Code(tuple(tables), tuple(body), flops)
+    flops = 2 * (sum(np.count_nonzero(matrix) for matrix, _ in sparse) + sum(matrix.size for matrix, _ in dense))
+    return Code(tuple(tables), tuple(body), int(flops))
+
+
+def _is_dense(matrix: Array) -> bool:
+    return bool(np.count_nonzero(matrix) > max(_FEW, _SPARSE * matrix.size))
 
 
 def _sum(terms: Sequence[Term], row: int) -> str:
     text = ""
     for matrix, vector in terms:
         for column in np.flatnonzero(matrix[row]):
-            value = float(matrix[row, column])
+            value = matrix[row, column]
             sign = ("-" if value < 0.0 else "") if not text else (" - " if value < 0.0 else " + ")
             factor = "" if abs(value) == 1.0 else f"{number(abs(value))} * "
             text += f"{sign}{factor}{vector}[{column}]"

@@ -67,7 +67,7 @@ class Program:
     outputs: tuple[Signal, ...]
     states: tuple[State, ...]
     code: Code
-    settings: tuple[ProgramSetting, ...] | None = None
+    settings: tuple[ProgramSetting, ...] = ()
     functions: tuple[ProgramFunction, ...] = ()
 
     @property
@@ -89,7 +89,7 @@ class Program:
             "",
             *_signals(f"{name}_input", self.inputs),
             *_signals(f"{name}_output", self.outputs),
-            *_struct(f"{name}_state", [_array(each) for each in self.states if all(each.sizes)], self._is_set("int is_on;")),
+            *_struct(f"{name}_state", [_array(each) for each in self.states if all(each.sizes)], ["int is_on;"] if self.settings else []),
             *self._parameters(),
             *comment("Initialise the state; call once before the first step."),
             f"{init};",
@@ -115,10 +115,10 @@ class Program:
             *(line for text in self.about for line in comment(text)),
             f'#include "{self.name}.h"',
             "",
-            "#include <math.h>" if self.settings is None else "#include <float.h>",
+            "#include <float.h>" if self.settings else "#include <math.h>",
             "",
             *_NO_FAST_MATH,
-            *self._is_set(*_ROUNDED),
+            *(_ROUNDED if self.settings else ()),
             "",
             *(MULTIPLY if any("multiply(" in line for line in self.code.body) else ()),
             *(_IS_FINITE if any("is_finite(" in line for line in self.code.body) else ()),
@@ -132,26 +132,21 @@ class Program:
     @property
     def _calls(self) -> tuple[str, str]:
         """Declarations of the initialisation and the step."""
-        name, (changed, read) = self.name, ("", "")
-        if self.settings is not None:
-            changed, read = f", {name}_parameters *set", f" const {name}_parameters *set,"
+        name = self.name
+        changed, read = (f", {name}_parameters *set", f" const {name}_parameters *set,") if self.settings else ("", "")
         step = f"void {name}_step({name}_state *state,{read} const {name}_input *in, {name}_output *out)"
         return f"void {name}_init({name}_state *state{changed})", step
 
-    def _is_set(self, *lines: str) -> tuple[str, ...]:
-        """Lines only for a program with settings."""
-        return () if self.settings is None else lines
-
     def _parameters(self) -> list[str]:
-        if self.settings is None:
+        if not self.settings:
             return []
         arrays = [line for each in self.settings for line in (*comment(each.meaning), f"double {each.field}[{len(each.values)}];")]
         notes = comment("Adjustable between two steps; enable is 0 or 1.")
         return [f"typedef double {self.name}_real;", "", *notes, *_struct(f"{self.name}_parameters", arrays, ("int enable;",))]
 
     def _first_settings(self) -> list[str]:
-        lines = list(self._is_set("state->is_on = 0;", "set->enable = 0;"))
-        for each in self.settings or ():
+        lines = ["state->is_on = 0;", "set->enable = 0;"] if self.settings else []
+        for each in self.settings:
             lines += table(f"first_{each.field}", each.values)
             lines.append(f"for (int i = 0; i < {len(each.values)}; i++) set->{each.field}[i] = first_{each.field}[i];")
         return lines

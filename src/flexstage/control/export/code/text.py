@@ -20,9 +20,7 @@ def number(value: float) -> str:
     >>> number(0.1), number(-3.0), number(float("inf")), number(1e-300)
     ('0.1', '-3.0', 'HUGE_VAL', '1e-300')
     """
-    if np.isinf(value):
-        return "HUGE_VAL" if value > 0.0 else "-HUGE_VAL"
-    return repr(float(value))
+    return repr(float(value)).replace("inf", "HUGE_VAL")
 
 
 def table(name: str, values: Array) -> list[str]:
@@ -39,13 +37,13 @@ def table(name: str, values: Array) -> list[str]:
     return [f"static const double {name}{sizes} = {{", *(part for line in lines for part in wrap(line, "     ")), "};"]
 
 
-def indent(lines: Iterable[str], depth: int = 1) -> list[str]:
+def indent(lines: Iterable[str]) -> list[str]:
     """Indent lines.
 
     >>> indent(["a;", ""])
     ['    a;', '']
     """
-    return [f"{'    ' * depth}{line}" if line else "" for line in lines]
+    return [f"    {line}" if line else "" for line in lines]
 
 
 def comment(text: str) -> list[str]:
@@ -57,9 +55,7 @@ def comment(text: str) -> list[str]:
     apart = printable(text).replace("*/", "* /").replace("/*", "/ *")
     apart = re.sub(r"\?(?=\?)", "? ", apart)  # no trigraphs
     parts = textwrap.wrap(apart, _WIDTH - 6, break_long_words=False) or [""]
-    if len(parts) == 1:
-        return [f"/* {parts[0]} */"]
-    return [f"/* {parts[0]}", *(f" * {part}" for part in parts[1:-1]), f" * {parts[-1]} */"]
+    return ("/* " + "\n * ".join(parts) + " */").split("\n")
 
 
 def wrap(line: str, further: str = "    ") -> list[str]:
@@ -103,5 +99,4 @@ _HEADERS = (
     "regexp resolv sched search semaphore spawn stab strings stropts syslog tar termio termios thread tchar trace ucontext ulimit "
     "unistd utime utmp utmpx values varargs wait windows winbase windef winsock winsock2 wordexp xlocale zlib "
 )
-_OWN = "model"
-_TAKEN = frozenset(f"{_WORDS} {_HEADERS} {_OWN}".split())
+_TAKEN = frozenset(f"{_WORDS} {_HEADERS} model".split())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import uuid
 from collections.abc import Iterable
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from flexstage.base.text import printable
 from flexstage.base.units.dimension import dimension_of
@@ -36,7 +36,7 @@ def description(program: Program, sources: Iterable[str]) -> bytes:
     """
     inputs = [(each, signal.meaning) for signal in program.inputs for each in signal.channels]
     outputs = [(each, signal.meaning) for signal in program.outputs for each in signal.channels]
-    root = ElementTree.Element(
+    root = Element(
         "fmiModelDescription",
         fmiVersion="2.0",
         modelName=program.name,
@@ -48,22 +48,22 @@ def description(program: Program, sources: Iterable[str]) -> bytes:
     )
     _co_simulation(root, program, sources)
     _units(root, [channel.unit for channel, _ in (*inputs, *outputs)])
-    ElementTree.SubElement(ElementTree.SubElement(root, "LogCategories"), "Category", name="logStatusError", description="rejected calls")
-    ElementTree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime="1.0", stepSize=repr(program.step))
-    variables = ElementTree.SubElement(root, "ModelVariables")
+    SubElement(SubElement(root, "LogCategories"), "Category", name="logStatusError", description="rejected calls")
+    SubElement(root, "DefaultExperiment", startTime="0.0", stopTime="1.0", stepSize=repr(program.step))
+    variables = SubElement(root, "ModelVariables")
     for number, (channel, meaning) in enumerate((*inputs, *outputs)):
         _variable(variables, number, channel, meaning, is_input=number < len(inputs))
-    structure = ElementTree.SubElement(root, "ModelStructure")
+    structure = SubElement(root, "ModelStructure")
     for kind in ("Outputs", "InitialUnknowns") if outputs else ():
-        group = ElementTree.SubElement(structure, kind)
+        group = SubElement(structure, kind)
         for number in range(len(outputs)):
-            ElementTree.SubElement(group, "Unknown", index=str(len(inputs) + number + 1))
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+            SubElement(group, "Unknown", index=str(len(inputs) + number + 1))
+    indent(root)
+    return tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
 
 
-def _co_simulation(root: ElementTree.Element, program: Program, sources: Iterable[str]) -> None:
-    element = ElementTree.SubElement(
+def _co_simulation(root: Element, program: Program, sources: Iterable[str]) -> None:
+    element = SubElement(
         root,
         "CoSimulation",
         modelIdentifier=program.name,
@@ -76,27 +76,27 @@ def _co_simulation(root: ElementTree.Element, program: Program, sources: Iterabl
         canGetAndSetFMUstate="true",
         canSerializeFMUstate="true",
     )
-    files = ElementTree.SubElement(element, "SourceFiles")
+    files = SubElement(element, "SourceFiles")
     for name in sources:
-        ElementTree.SubElement(files, "File", name=name)
+        SubElement(files, "File", name=name)
 
 
-def _units(root: ElementTree.Element, units: Iterable[str]) -> None:
+def _units(root: Element, units: Iterable[str]) -> None:
     known = sorted({unit for unit in units if unit})
     if not known:
         return
-    definitions = ElementTree.SubElement(root, "UnitDefinitions")
+    definitions = SubElement(root, "UnitDefinitions")
     for unit in known:
         powers = {_BASE[name.strip("[]")]: str(int(power)) for name, power in dimension_of(unit).powers}
-        ElementTree.SubElement(ElementTree.SubElement(definitions, "Unit", name=unit), "BaseUnit", powers)
+        SubElement(SubElement(definitions, "Unit", name=unit), "BaseUnit", powers)
 
 
-def _variable(parent: ElementTree.Element, number: int, channel: Channel, meaning: str, *, is_input: bool) -> None:
+def _variable(parent: Element, number: int, channel: Channel, meaning: str, *, is_input: bool) -> None:
     causality = {"causality": "input"} if is_input else {"causality": "output", "initial": "calculated"}
-    variable = ElementTree.SubElement(
+    variable = SubElement(
         parent,
         "ScalarVariable",
         {"name": printable(channel.name), "valueReference": str(number), "description": meaning, "variability": "discrete", **causality},
     )
     unit = {"unit": channel.unit} if channel.unit else {}
-    ElementTree.SubElement(variable, "Real", {**unit, **({"start": "0.0"} if is_input else {})})
+    SubElement(variable, "Real", {**unit, **({"start": "0.0"} if is_input else {})})

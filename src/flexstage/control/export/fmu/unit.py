@@ -37,7 +37,11 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     members: dict[str, bytes] = {"modelDescription.xml": description(program, [name for name in texts if name.endswith(".c")])}
     members |= {f"sources/{name}": text.encode() for name, text in texts.items()}
     if not sources_only:
-        folder, suffix = _place()
+        kind = sys.platform, platform.machine()
+        if kind not in _FOLDERS:
+            what = f"libraries of {kind[0]} on {kind[1]} have no FMI 2.0 name, or cannot be built"
+            raise refuse("functional mock-up unit", what, "Write the unit with sources only: the importer compiles them")
+        folder, suffix = _FOLDERS[kind]
         members[f"binaries/{folder}/{program.name}.{suffix}"] = compile_source("a functional mock-up unit", texts, FLAGS)
     return _zip(members)
 
@@ -55,7 +59,7 @@ def fmu_sources(program: Program) -> dict[str, str]:
 
 
 def _shared_name(program: Program) -> str:
-    name, upper = program.name, program.name.upper()
+    name = program.name
     lines = [
         "/* The program called by the FMI 2.0 functions. */",
         "#ifndef MODEL_H",
@@ -68,7 +72,7 @@ def _shared_name(program: Program) -> str:
         f"typedef {name}_output model_output;",
         f"#define MODEL_INIT {name}_init",
         f"#define MODEL_STEP {name}_step",
-        f"#define MODEL_PERIOD {upper}_PERIOD",
+        f"#define MODEL_PERIOD {name.upper()}_PERIOD",
         f"#define MODEL_INPUTS {_count(program.inputs)}",
         f"#define MODEL_OUTPUTS {_count(program.outputs)}",
         f'#define MODEL_GUID "{guid(program)}"',
@@ -80,14 +84,6 @@ def _shared_name(program: Program) -> str:
 
 def _count(signals: tuple[Signal, ...]) -> int:
     return sum(len(signal.channels) for signal in signals)
-
-
-def _place() -> tuple[str, str]:
-    kind = (sys.platform, platform.machine())
-    if kind not in _FOLDERS:
-        what = f"libraries of {kind[0]} on {kind[1]} have no FMI 2.0 name, or cannot be built"
-        raise refuse("functional mock-up unit", what, "Write the unit with sources only: the importer compiles them")
-    return _FOLDERS[kind]
 
 
 def _zip(members: Mapping[str, bytes]) -> bytes:
