@@ -89,7 +89,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     Example of a comparison: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
     """
     if example is not None:
-        return _write_example(context.params["design"], example)
+        write(example, commented_example(), "--example")
+        announce(f"Wrote {example}. Next: flexstage loop {context.params['design']} --setup {example}")
+        return None
     exports = export or []
     require_names(exports, hardware)
     own = [(f"--{name}", context.params[name]) for name in ("json", "xlsx", "report")]
@@ -171,11 +173,6 @@ def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> 
     }
     what = "belongs to one controller, but --compare tunes several kinds"
     require(Finding(name, what, f"Remove {name}") for name, is_said in said.items() if is_said)
-
-
-def _write_example(design: Path, example: Path) -> None:
-    write(example, commented_example(), "--example")
-    announce(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
 
 
 def _tables(found: LoopStudy) -> list[Table | str | None]:

@@ -125,11 +125,7 @@ class StageController:
             raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
         if not all(self.held[axis] for axis in targets):
             raise CommandError(Code.SERVO_OFF)
-        wanted = self.target.copy()
-        for axis, value in targets.items():
-            wanted[axis] = value
-        self._require_reach(wanted)
-        self.target = wanted
+        self.target = self._reachable(targets)
 
     def jump(self, axis: int, way: float) -> None:
         """Step one axis by `way` [um, urad] at once, regardless of its velocity setting, and start the recorder."""
@@ -151,19 +147,21 @@ class StageController:
         if not self.held[axis]:
             raise CommandError(Code.SERVO_OFF)
         for end in (np.min(self.tables[one.table]), np.max(self.tables[one.table])):
-            wanted = self.target.copy()
-            wanted[axis] = end + one.offset
-            self._require_reach(wanted)
+            self._reachable({axis: end + one.offset})
         one.at = 0
 
-    def _require_reach(self, wanted: Array) -> None:
-        """Refuse a pose beyond the range of one axis, the strokes together, or a gauge."""
+    def _reachable(self, targets: dict[int, float]) -> Array:
+        """Pose with new targets of some axes; refuses a pose beyond the range of one axis, the strokes together, or a gauge."""
+        wanted = self.target.copy()
+        for axis, value in targets.items():
+            wanted[axis] = value
         low, high = self._ends
         needed = self._gains @ (wanted / _MICRO)
         slack = 1e-9 * (self.high - self.low)
         bounds = ((wanted, self.low - slack, self.high + slack), (needed, low - 1e-9 * np.abs(low), high + 1e-9 * np.abs(high)))
         if any(np.any((values < least) | (values > most)) for values, least, most in bounds):
             raise CommandError(Code.POSITION_OUT_OF_LIMITS)
+        return wanted
 
     # --- time ---
 
@@ -216,7 +214,7 @@ class StageController:
         one.at = None if one.cycles and start + count >= one.cycles * length else start + count
         course = found + one.offset
         self.target[axis] = course[-1]
-        return np.asarray(course)
+        return course
 
     @property
     def has_volts(self) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -102,13 +103,10 @@ def spelled(name: str) -> str:
 
 
 def _number(word: str) -> float:
-    try:
-        value = float(word)
-    except ValueError:
-        raise CommandError(Code.INVALID_NUMBER) from None
-    if not math.isfinite(value):
-        raise CommandError(Code.INVALID_NUMBER)
-    return value
+    with suppress(ValueError):
+        if math.isfinite(value := float(word)):
+            return value
+    raise CommandError(Code.INVALID_NUMBER)
 
 
 def _integer(word: str, low: int, high: int) -> int:
@@ -153,10 +151,6 @@ def _plain(lines: Callable[[StageController], Sequence[str]]) -> Answer:
         return lines(session.stage)
 
     return answer
-
-
-def _identify(stage: StageController) -> list[str]:
-    return [f"flexstage,virtual controller,{printable(stage.name).replace(',', ' ')},{__version__}"]
 
 
 def _help(_: StageController) -> list[str]:
@@ -246,7 +240,7 @@ def _signals(values: Callable[[StageController], Array]) -> Answer:
         found = values(session.stage)
         if not np.all(np.isfinite(found)):
             raise CommandError(Code.UNKNOWN_PARAMETER)
-        return [f"{channel + 1}={_shown(float(found[channel]))}" for channel in session.places(words, len(found))]
+        return [f"{channel + 1}={_shown(found[channel])}" for channel in session.places(words, len(found))]
 
     return answer
 
@@ -450,7 +444,10 @@ COMMANDS: dict[str, tuple[Answer, str]] = {
     "\x07": (lambda _s, _: ["\xb1"], "whether the controller is ready"),
     "\x09": (lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
     "\x18": (_stop, "stop all axes"),
-    "*IDN?": (_plain(_identify), "identification"),
+    "*IDN?": (
+        _plain(lambda stage: [f"flexstage,virtual controller,{printable(stage.name).replace(',', ' ')},{__version__}"]),
+        "identification",
+    ),
     "CSV?": (_plain(lambda _: ["2.0"]), "syntax version"),
     "DRC": (_configure, "set data recorder configuration"),
     "DRC?": (

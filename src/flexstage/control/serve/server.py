@@ -135,21 +135,10 @@ class ServedStage:
                 turn = found[start : start + _TURN]
                 if any(map(_HTTP.match, turn)):  # refuse pages of a browser
                     return
-                await self._answer(session, turn, writer)
-
-    async def _answer(self, session: Session, lines: list[bytes], writer: asyncio.StreamWriter) -> None:
-        """Answer some lines; long answers one by one, to wait for slow clients."""
-        answers = bytearray()
-        for line in lines:
-            answers += session.hear(line)
-            if len(answers) > _READ:
-                writer.write(bytes(answers))
-                await writer.drain()
+                for line in turn:
+                    writer.write(session.hear(line))
+                    await writer.drain()  # wait for slow clients
                 await asyncio.sleep(0.0)
-                answers.clear()
-        writer.write(bytes(answers))
-        await writer.drain()
-        await asyncio.sleep(0.0)
 
 
 class _Lines:

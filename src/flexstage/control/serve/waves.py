@@ -35,7 +35,7 @@ def segment(kind: str, values: Sequence[float]) -> Array:
     if lengths[1] < 1 or lengths[2] + lengths[1] > lengths[0] or any(each >= lengths[1] for each in lengths[3:]):
         raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
     share = (np.arange(lengths[0]) - lengths[2]).clip(0, lengths[1] - (kind == "LIN"))
-    return np.asarray(offset + amplitude * form(share, lengths[1], *lengths[3:]))
+    return offset + amplitude * form(share, lengths[1], *lengths[3:])
 
 
 def _whole(value: float) -> int:
@@ -63,26 +63,21 @@ def _sine(at: Array, wave: int, centre: int) -> Array:
     return np.where(at < centre, rise, fall)
 
 
-def _line(at: Array, wave: int, rounded: int) -> Array:
-    """Line from 0 at the first point to 1 at the last, with parabolic ends over so many points each."""
-    return _rounded(at, float(wave - 1), rounded)
-
-
 def _ramp(at: Array, wave: int, rounded: int, centre: int) -> Array:
     """Ramp to 1 at the centre and back, rounded at the foot, the top and the end."""
-    return np.where(at < centre, _rounded(at, float(centre), rounded), _rounded(wave - at, float(wave - centre), rounded))
+    return np.where(at < centre, _rounded(at, centre, rounded), _rounded(wave - at, wave - centre, rounded))
 
 
 def _rounded(at: Array, length: float, rounded: int) -> Array:
     """Transition from 0 to 1 over a length, with constant acceleration over `rounded` at both ends; middle slope 1/(length - rounded)."""
     if length <= 0.0:
         return np.ones_like(at, dtype=float)
-    edge = min(float(rounded), 0.5 * length)
+    edge = min(rounded, 0.5 * length)
     if edge == 0.0:
-        return np.asarray(np.clip(at / length, 0.0, 1.0))
+        return np.clip(at / length, 0.0, 1.0)
     slope = 1.0 / (length - edge)
     foot, top = 0.5 * slope * at**2 / edge, 1.0 - 0.5 * slope * (length - at) ** 2 / edge
     return np.where(at < edge, foot, np.where(at > length - edge, top, slope * (at - 0.5 * edge)))
 
 
-_CURVES = {"SIN_P": (6, _sine), "LIN": (6, _line), "RAMP": (7, _ramp)}
+_CURVES = {"SIN_P": (6, _sine), "LIN": (6, lambda at, wave, rounded: _rounded(at, wave - 1, rounded)), "RAMP": (7, _ramp)}
