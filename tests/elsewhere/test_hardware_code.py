@@ -23,7 +23,7 @@ from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.export.code.hardware import FLAGS, Hardware, hardware_code
-from flexstage.control.export.code.precision import Precision
+from flexstage.control.export.code.precision import Precision, typed
 from flexstage.control.export.compiler import find_compiler
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.run import simulate
@@ -190,7 +190,7 @@ def test_a_cortex_m_gives_the_same_bits(tmp_path, kind, precision, core):
     made = code(kind, precision)
     _, bits = here(tmp_path, made)
     board, flags = EMULATED[core]
-    (tmp_path / "start.c").write_text(START.replace("double_or_float", precision.word))
+    (tmp_path / "start.c").write_text(START.replace("double_or_float", typed("double", precision)))
     (tmp_path / "layout.ld").write_text(LAYOUT)
     sources = ["stage.c", "stage_test.c", "start.c"]
     command = [ARM, "-O2", "-std=gnu99", "-ffp-contract=off", "-mthumb", *flags, "-ffreestanding", "-nostdlib", *sources]
