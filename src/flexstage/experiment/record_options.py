@@ -222,7 +222,7 @@ def _arrays(texts: Sequence[str] | None, findings: list[Finding]) -> options.Arr
 def _word(option: str, word: str, kind: type[_Word], findings: list[Finding]) -> _Word | None:
     known = {str(each.value): each for each in kind}
     if word not in known:
-        findings.append(Finding(f"{option} {word}", "unknown word", f"Use {list_choices(known)}"))
+        findings.append(Finding(f"{option} {word}", "unknown word", f"Use {list_choices([*known])}"))
     return known.get(word)
 
 

@@ -190,7 +190,7 @@ def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Seg
     inputs = len({channel.name for record in records for channel in record.inputs})
     shortest = min(record.duration for record in records)
     if all(_is_swept_once(record, Segments(record.duration / wanted, 0.0)) for record in records):
-        return Segments(min(shortest, _WHOLE / records[0].rate), 0.0, Window.BOXCAR)
+        return whole_segment(records, _WHOLE)
     needed = max(wanted, _PER_INPUT * inputs) / len(records)
     seconds = min(shortest / max(4.0, needed), _LONGEST / records[0].rate)
     return Segments(max(seconds, min(shortest, 16.0 / records[0].rate)))
@@ -215,15 +215,15 @@ def _is_swept_once(record: Record, segments: Segments) -> bool:
     return bool(np.median(often) < _ONCE and np.max(lines) < 0.5 * np.sum(lines))
 
 
-def whole_segment(records: Sequence[Record]) -> Segments:
-    """Return one segment without a window, as long as the shortest record (at most 2^15 samples), for an impact or a burst.
+def whole_segment(records: Sequence[Record], most: int = _LONGEST) -> Segments:
+    """Return one segment without a window, as long as the shortest record (at most `most` samples), for an impact or a burst.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> whole_segment([one_mode_record(seconds=48.0)]).seconds
     48.0
     """
     shortest = min(record.duration for record in records)
-    return Segments(min(shortest, _LONGEST / records[0].rate), 0.0, Window.BOXCAR)
+    return Segments(min(shortest, most / records[0].rate), 0.0, Window.BOXCAR)
 
 
 def _of_responses(known: Responses) -> Evidence:

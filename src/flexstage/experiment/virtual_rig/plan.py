@@ -96,16 +96,18 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
     """
     names = setup.drive.actuators or drivable_actuators(mechanism, model)
     inputs = driven_inputs(mechanism, names)
-    gauges = {name: placed.gauge for name, placed in expand(mechanism).gauges.items() if not placed.members}
-    metres = np.array([gauge.quantity.si == "m" for gauge in gauges.values()])
+    placed = {name: each.gauge for name, each in expand(mechanism).gauges.items() if not each.members}
+    gauges = tuple(placed.values())
+    units = tuple(gauge.quantity.si for gauge in gauges)
+    metres = np.array([unit == "m" for unit in units])
     highest = platform_modes(mechanism, model).highest
     rate = float(setup.rate or 2.0 ** np.ceil(np.log2(_RATE_OVER_HIGHEST * highest)))
     cutoffs = setup.amplifier.cutoff(np.array([each.capacitance for each in inputs]))
     return Plan(
         setup=setup,
         actuators=tuple(names),
-        gauges=tuple(gauges),
-        units=tuple(gauge.quantity.si for gauge in gauges.values()),
+        gauges=tuple(placed),
+        units=units,
         rate=rate,
         band=setup.drive.band or (0.0, _BAND_SHARE * rate),
         corner=setup.filter.corner or _BAND_SHARE * rate,
@@ -113,11 +115,11 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
         inputs=inputs,
         rms=np.array([_commanded_rms(setup, each) for each in inputs]),
         bandwidths=np.minimum(cutoffs, [each.lag for each in inputs]),
-        densities=_asked(setup.sensing.density, metres, _stated([gauge.noise_density for gauge in gauges.values()], 0.0)),
-        steps=_asked(setup.sensing.resolution, metres, _stated([gauge.resolution for gauge in gauges.values()], 0.0)),
-        lags=_stated([gauge.bandwidth for gauge in gauges.values()], np.inf),
+        densities=_asked(setup.sensing.density, metres, _stated([gauge.noise_density for gauge in gauges], 0.0)),
+        steps=_asked(setup.sensing.resolution, metres, _stated([gauge.resolution for gauge in gauges], 0.0)),
+        lags=_stated([gauge.bandwidth for gauge in gauges], np.inf),
         walks=_asked(setup.sensing.drift, metres, np.zeros(len(gauges))),
-        ranges=_stated([gauge.range for gauge in gauges.values()], np.inf),
+        ranges=_stated([gauge.range for gauge in gauges], np.inf),
     )
 
 
