@@ -62,7 +62,9 @@ def extents(poles: Array, low: float, high: float, *, resolution: Array | float 
     bottom, top = frequencies - _REACH * widths, frequencies + _REACH * widths
     return [
         Extent(
-            max(low, limits[group[0]], np.min(bottom[group])), min(high, limits[group[-1] + 1], np.max(top[group])), tuple(group.tolist())
+            float(max(low, limits[group[0]], np.min(bottom[group]))),
+            float(min(high, limits[group[-1] + 1], np.max(top[group]))),
+            tuple(group.tolist()),
         )
         for whole in np.split(np.arange(len(poles)), 1 + np.flatnonzero(gaps >= together * both))
         for group in _divide(whole, frequencies)
