@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from flexstage.apps import doctor
@@ -18,17 +17,13 @@ _TOLERANCE = 1e-5
 def consult() -> int:
     """Examine the installation and print the rows; the exit code is the verdict."""
     rows = doctor.examine(Path.cwd(), self_test)
-    _print_rows(rows)
-    bad = [row for row in rows if row.verdict is Verdict.BAD]
-    print_result("The installation is sound." if not bad else f"{len(bad)} problem{'s' * (len(bad) > 1)} found.")
-    return BAD_INPUT if bad else DONE
-
-
-def _print_rows(rows: Iterable[Row]) -> None:
     for row in rows:
         print_result(f"{row.verdict.value:5} {row.what:18} {row.found}{f' (required: {row.wanted})' if row.wanted else ''}")
         if row.remedy:
             print_result(f"      {'':18} {row.remedy}")
+    bad = [row for row in rows if row.verdict is Verdict.BAD]
+    print_result("The installation is sound." if not bad else f"{len(bad)} problem{'s' * (len(bad) > 1)} found.")
+    return BAD_INPUT if bad else DONE
 
 
 def self_test() -> Row:

@@ -10,7 +10,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 
 COMMAND = "python -m flexstage.apps.quadmath"
@@ -25,7 +25,14 @@ def missing_place(folders: Iterable[Path | str]) -> Path | None:
     >>> missing_place([]) is None
     True
     """
-    return next(_find_missing([Path(folder) for folder in folders]), None)
+    # Some builds (64-bit ARM) do not need it: the dynamic section of a library lists its dependencies.
+    missing = (
+        library.with_name(_NAME)
+        for folder in folders
+        for library in Path(folder).glob(_WANTING)
+        if not library.with_name(_NAME).exists() and _NAME.encode() in library.read_bytes()
+    )
+    return next(missing, None)
 
 
 def provide(folders: Iterable[Path | str]) -> str:
@@ -47,14 +54,6 @@ def provide(folders: Iterable[Path | str]) -> str:
     except OSError as error:
         return f"{place}: {error.strerror}"
     return ""
-
-
-def _find_missing(folders: Iterable[Path]) -> Iterator[Path]:
-    for folder in folders:
-        for library in folder.glob(_WANTING):
-            # Some builds (64-bit ARM) do not need it: the dynamic section of a library lists its dependencies.
-            if not library.with_name(_NAME).exists() and _NAME.encode() in library.read_bytes():
-                yield library.with_name(_NAME)
 
 
 def _copy(source: Path, place: Path) -> None:

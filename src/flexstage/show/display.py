@@ -175,12 +175,8 @@ def align_numbers(values: Iterable[float]) -> list[str]:
         return [number(value) for value in items]
     significant = DIGITS + (1 if max(sizes) / min(sizes) > 10.0 else 0)
     decimals = max(0, significant - 1 - math.floor(math.log10(max(sizes))))
-    decimals = min(decimals, max(_decimals(number(value, significant)) for value in items))
+    decimals = min(decimals, max(len(number(value, significant).partition(".")[2]) for value in items))
     return [f"{value:.{decimals}f}" if math.isfinite(value) and value != 0.0 else number(value) for value in items]
-
-
-def _decimals(text: str) -> int:
-    return len(text.partition(".")[2])
 
 
 def percent(share: float, digits: int = 4) -> str:

@@ -12,6 +12,7 @@ from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.catalogue import Catalogue, Section
 from flexstage.mechanism.grammar.grammar import TAGS
 from flexstage.show.table import Cell, Mark, Table, make_table, text_table
+from flexstage.show.tables.description import TAG_MARKS
 
 
 def case_table() -> Table | None:
@@ -80,5 +81,4 @@ def _entry_cell(entry: Mapping[str, Any], key: str) -> Cell:
     if key not in entry:
         return Cell("", Mark.FAINT)
     tag = str(entry.get(TAGS, {}).get(key, "")).partition(" ")[0]
-    marks = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
-    return Cell(str(entry[key]), marks.get(tag, Mark.PLAIN))
+    return Cell(str(entry[key]), TAG_MARKS.get(tag, Mark.PLAIN))

@@ -82,12 +82,9 @@ def _sheet(sheet: Sheet) -> dict[str, Any]:
 
 
 def _column(values: tuple[Any, ...]) -> Any:
-    numbers = all(each is None or isinstance(each, NUMBERS) for each in values)
-    return np.array([np.nan if each is None else each for each in values]) if numbers else cells(map(_words, values))
-
-
-def _words(value: Any) -> str:
-    return "" if value is None else str(value)
+    if all(each is None or isinstance(each, NUMBERS) for each in values):
+        return np.array([np.nan if each is None else each for each in values])
+    return cells("" if each is None else str(each) for each in values)
 
 
 def mat_variables(analysis: Analysis) -> dict[str, Any]:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import base64
-import functools
 import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from importlib import resources
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
@@ -16,7 +14,7 @@ from flexstage.show.figures.export import to_svg
 from flexstage.show.render import templates
 from flexstage.show.table import Table
 from flexstage.show.viewer.data import StageData
-from flexstage.show.viewer.fragment import bundle, data_script
+from flexstage.show.viewer.fragment import bundle, data_script, read_static
 
 
 @dataclass(frozen=True)
@@ -168,9 +166,9 @@ def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, St
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True
     """
-    scripts = [_static("report.js"), *([bundle()] if stages else [])]
+    scripts = [read_static("report.js"), *([bundle()] if stages else [])]
     kept = [each for each in sections if each is not None]
-    text = printable(str(templates().page(head, kept, _static("report.css"), _policy(scripts))), keep="\n\t")
+    text = printable(str(templates().page(head, kept, read_static("report.css"), _policy(scripts))), keep="\n\t")
     data = "".join(data_script(key, each) for key, each in stages.items())
     return text + data + "".join(f"<script>{each}</script>" for each in scripts) + "</body></html>\n"
 
@@ -179,8 +177,3 @@ def _policy(scripts: Iterable[str]) -> str:
     """Content security policy: these scripts, inline styles and inline pictures; no loading."""
     sums = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(each.encode()).digest()).decode()}'" for each in scripts)
     return f"default-src 'none'; script-src {sums}; style-src 'unsafe-inline'; img-src data: blob:"
-
-
-@functools.cache
-def _static(name: str) -> str:
-    return resources.files("flexstage.show").joinpath(f"static/{name}").read_text(encoding="utf-8")

@@ -146,7 +146,8 @@ def _rich_table(table: Table, widths: Mapping[int, int]) -> Any:
     for index, width in widths.items():
         column = table.columns[index]
         justify = "right" if column.numeric else "left"
-        result.add_column(Text(_head_text(column, width)), justify=justify, width=width, no_wrap=True, overflow="crop")
+        head = f"{_fill(column.head, width)}\n[{printable(column.unit)}]" if column.unit else _fill(column.head, width)
+        result.add_column(Text(head), justify=justify, width=width, no_wrap=True, overflow="crop")
     for row in table.rows:
         result.add_row(*(Text(_fill(row[index].text, width), style=_STYLES.get(row[index].mark, "")) for index, width in widths.items()))
     return result
@@ -189,11 +190,6 @@ def _fit(spans: Mapping[int, _Span], width: int) -> dict[int, int]:
             break
         found[max(able, key=lambda index: found[index])] -= 1
     return found
-
-
-def _head_text(column: Column, width: int) -> str:
-    head = _fill(column.head, width)
-    return f"{head}\n[{printable(column.unit)}]" if column.unit else head
 
 
 def _fill(text: str, width: int) -> str:

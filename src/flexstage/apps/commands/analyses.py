@@ -17,7 +17,6 @@ from flexstage.analysis.linear_statics.drive_force import drive_force
 from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
-from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.loaded.standing import standing
 from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.base.finding import Finding, refuse, require
@@ -204,7 +203,7 @@ def modes(
             view,
             _moving(mechanism, linear, found, ending, model)
             if there.operating_point is None
-            else _moving_there(mechanism, there.operating_point, found),
+            else view_of(mechanism, modes_at_data(mechanism, there.operating_point, found, "about the operating point"), "state 1").html,
             "--view",
         )
     return there.result(there.body(found), lambda: [mode_table(found)])
@@ -223,11 +222,6 @@ def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str
     drawn = standing(mechanism) if model is Model.LUMPED else linear
     shown = stage_data(mechanism, model=drawn, weighed=linear, found=found)
     return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html
-
-
-def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> str:
-    """The stage with its modes about an operating point, as a page."""
-    return view_of(mechanism, modes_at_data(mechanism, there, found, "about the operating point"), "state 1").html
 
 
 @command()

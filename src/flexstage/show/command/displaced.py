@@ -59,7 +59,7 @@ class OperatingPointOptions:
     temperature: Temperature = None
 
     def __bool__(self) -> bool:
-        return bool(self.at or self.load or self.fixed or self.temperature)
+        return bool(self.options)
 
     @property
     def warmth(self) -> float:

@@ -12,7 +12,7 @@ from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.show.display import display_unit_of, number, percent, to_typography
 from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.show.table import first_design
-from flexstage.show.tables.lost_motion import energy_shares, foreign_links, named_budget
+from flexstage.show.tables.lost_motion import energy_shares, foreign_links, largest_shares, named_budget
 
 _REST = "rest"
 _COLOURED = 6
@@ -95,13 +95,12 @@ def _stack_bars(axes: Any, shares: _Shares, totals: Sequence[str], label: str, p
 
 def _largest_parts(shares: _Shares) -> dict[str, Any]:
     """The largest parts and links of other units, the sum of the others last, with their colours."""
-    parts = dict.fromkeys(part for each in shares.values() for part, share in each.items() if share)
-    size = {part: max(abs(each.get(part, 0.0)) for each in shares.values()) for part in parts}
+    size = {part: share for part, share in largest_shares(shares).items() if share}
     least = 2e-3 * max(size.values(), default=0.0)
-    ranked = sorted((part for part in parts if size[part] > least), key=lambda part: -round(size[part], 12))
+    ranked = sorted((part for part in size if size[part] > least), key=lambda part: -round(size[part], 12))
     chosen = [*[part for part in ranked if "/" not in part][:_COLOURED], *sorted(foreign_links(ranked, shares))]
     colours = {part: _tinted(SERIES[place % _COLOURED], 0.4 * (place // _COLOURED)) for place, part in enumerate(chosen)}
-    return colours | ({_REST: _REST_COLOUR} if len(parts) > len(chosen) else {})
+    return colours | ({_REST: _REST_COLOUR} if len(size) > len(chosen) else {})
 
 
 def _share(shares: Mapping[str, float], part: str, parts: Mapping[str, Any]) -> float:

@@ -16,22 +16,15 @@ from flexstage.show.scene.skin import Kind
 from flexstage.show.scene.stage import Label
 from flexstage.show.viewer.data import StageData
 
-_COLOURS = {
-    Kind.PLATFORM: ("#6ea8d8", 0.42),
-    Kind.BODY: ("#b9c2cc", 1.0),
-    Kind.HINGE: ("#0f8a7e", 1.0),
-    Kind.DRIVE: ("#f2a33c", 1.0),
-    Kind.GAUGE: ("#c2395a", 1.0),
-    Kind.GROUND: ("#56606b", 1.0),
+_STYLES = {
+    Kind.PLATFORM: ("platform", "#6ea8d8", 0.42),
+    Kind.BODY: ("bodies", "#b9c2cc", 1.0),
+    Kind.HINGE: ("hinges", "#0f8a7e", 1.0),
+    Kind.DRIVE: ("actuators", "#f2a33c", 1.0),
+    Kind.GAUGE: ("gauges", "#c2395a", 1.0),
+    Kind.GROUND: ("ground", "#56606b", 1.0),
 }
-NAMES = {
-    Kind.PLATFORM: "platform",
-    Kind.BODY: "bodies",
-    Kind.HINGE: "hinges",
-    Kind.DRIVE: "actuators",
-    Kind.GAUGE: "gauges",
-    Kind.GROUND: "ground",
-}
+"""Name, colour and opacity of each kind of parts."""
 _LABEL_COLOURS = {Kind.DRIVE: DRIVE, Kind.GAUGE: GAUGE}
 _EDGE = "#323e4b"
 _LIGHT = np.array([-0.35, 0.55, 0.76])
@@ -142,7 +135,7 @@ def draw(axes: Any, data: StageData, seen: View, points: Array | None = None, ki
 
     mesh = data.mesh
     places, shape = pixels(axes, mesh.points if points is None else points, seen)
-    paints = np.array([to_rgba(*_COLOURS[thing.kind]) if thing.kind in kinds else (0.0,) * 4 for thing in data.things]).reshape(-1, 4)
+    paints = np.array([to_rgba(*_STYLES[thing.kind][1:]) if thing.kind in kinds else (0.0,) * 4 for thing in data.things]).reshape(-1, 4)
     image, depth = np.zeros((*shape, 4), dtype=np.uint8), np.full(shape, -np.inf, dtype=np.float32)
     for layer in (paints[:, 3] == 1.0, (paints[:, 3] > 0.0) & (paints[:, 3] < 1.0)):
         faces, edges = (ends[layer[mesh.part[ends[:, 0]]]] for ends in (mesh.triangles, mesh.edges))
@@ -285,4 +278,4 @@ def legend(data: StageData) -> tuple[tuple[str, str], ...]:
     ['platform', 'bodies', 'hinges', 'actuators', 'gauges', 'ground']
     """
     shown = {thing.kind for thing in data.things}
-    return tuple((_COLOURS[kind][0], words) for kind, words in NAMES.items() if kind in shown)
+    return tuple((colour, words) for kind, (words, colour, _) in _STYLES.items() if kind in shown)

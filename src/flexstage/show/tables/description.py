@@ -36,7 +36,8 @@ TITLES = {
     "overrides": "Overrides of single instances",
     "": "Stage",
 }
-_TAGS = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
+TAG_MARKS = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
+"""Marks of values by the first word of their tag."""
 _NUMBER_DIGITS = 6
 
 
@@ -131,8 +132,8 @@ def provenance_table(mechanism: Mechanism) -> Table:
     [['tag', 'numbers'], ['assumed', '3']]
     """
     counts = Counter(tag.split()[0] if tag.split() else "assumed" for tag in provenance(mechanism).values())
-    order = [*_TAGS, *sorted(set(counts) - set(_TAGS))]
-    rows = [(Cell(tag, _TAGS.get(tag, Mark.PLAIN)), str(counts[tag])) for tag in order if counts[tag]]
+    order = [*TAG_MARKS, *sorted(set(counts) - set(TAG_MARKS))]
+    rows = [(Cell(tag, TAG_MARKS.get(tag, Mark.PLAIN)), str(counts[tag])) for tag in order if counts[tag]]
     return make_table("Provenance of the numbers", ["tag", Column("numbers")], rows)
 
 
@@ -170,7 +171,7 @@ def _row(mechanism: Mechanism, name: str, addresses: tuple[str, ...], tag: str, 
     text = values[0][0] if len(values) == 1 else f"({', '.join(text for text, _ in values)})"
     formulas = ", ".join(f"= {mechanism.formulas[address]}" for address in addresses if address in mechanism.formulas)
     origin = f"{formulas}; {source}" if formulas and source else formulas or source
-    return Cell(name, Mark.STRONG), Cell(text), Cell("" if unit == "1" else unit), Cell(word, _TAGS.get(word, Mark.PLAIN)), Cell(origin)
+    return Cell(name, Mark.STRONG), Cell(text), Cell("" if unit == "1" else unit), Cell(word, TAG_MARKS.get(word, Mark.PLAIN)), Cell(origin)
 
 
 def _value(value: Number, quantity: Quantity) -> tuple[str, str]:

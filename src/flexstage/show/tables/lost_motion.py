@@ -114,9 +114,8 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
 
     Negligible links are combined in one row. The last row contains the sums under the name `total`.
     """
-    parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
-    size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
-    ranked = sorted(parts, key=lambda part: -round(size[part], 9))
+    size = largest_shares(columns)
+    ranked = sorted(size, key=lambda part: -round(size[part], 9))
     foreign = foreign_links(ranked, columns)
     kept = [part for part in ranked if size[part] >= _SHOWN and ("/" not in part or part in foreign)]
     small = [part for part in ranked if part not in kept and size[part] >= NOISE]
@@ -126,6 +125,16 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
         rows.append(_share_row(label, [sum(shares.get(part, 0.0) for part in small) for shares in columns.values()]))
     sums = [_zero_if_noise(sum(shares.values())) for shares in columns.values()]
     return [*rows, (Cell(total, Mark.STRONG), *(Cell(percent(value), Mark.STRONG) for value in sums))]
+
+
+def largest_shares(columns: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
+    """Return the largest magnitude of each contribution in the columns.
+
+    >>> largest_shares({"B1": {"front": 0.1}, "B2": {"front": -0.2, "back": 0.0}})
+    {'front': 0.2, 'back': 0.0}
+    """
+    parts = dict.fromkeys(part for shares in columns.values() for part in shares)
+    return {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:

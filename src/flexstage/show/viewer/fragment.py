@@ -35,9 +35,14 @@ def data_script(key: str, data: StageData) -> str:
 
 
 @cache
+def read_static(name: str) -> str:
+    """Read a shipped file of pages."""
+    return resources.files("flexstage.show").joinpath(f"static/{name}").read_text(encoding="utf-8")
+
+
 def bundle() -> str:
     """Read the viewer's program as shipped, with its licence at the top."""
-    return resources.files("flexstage.show").joinpath("static/viewer.js").read_text(encoding="utf-8")
+    return read_static("viewer.js")
 
 
 def fragment(data: StageData, *, motion: str = "", instead: str = "") -> str:
