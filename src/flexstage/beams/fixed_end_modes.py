@@ -110,7 +110,7 @@ def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> 
         width, poisson, across = part.plate.width, part.plate.poisson, _across(_EVEN)
         bending, fields = part.rigidity / (1.0 - poisson * poisson), 2 + len(_EVEN)
         scale = width * width / 6.0
-        blocks += _plate_blocks(clamped, _EVEN, bending / width * scale * scale, part, first=2)
+        blocks += _plate_blocks(clamped, _EVEN, bending / width * scale * scale, part.plate, half, first=2)
         curling = [2.0 * poisson * bending * scale / (width * width) * bend for bend in across.curling]
         blocks += [{(1, 2 + number): (each, plain.product(1, 0, clamped))} for number, each in enumerate(curling)]
         shares = 0.5 * scale * scale * part.mass * half
@@ -138,19 +138,14 @@ def fixed_end_twist(part: Torsion, count: int, stations: Array) -> FixedEndModes
         heavy.append({(0, 0): (part.warping_inertia / half, slope)})
     fields = 1
     if part.plate is not None and part.warping is not None:
-        fields = len(_ODD)
-        stiff = _plate_blocks(basis, _ODD, 3.0 * part.warping / part.plate.width, part, first=0, shear=_edges(part, part.warping))
+        fields, plate = len(_ODD), part.plate
+        edges = part.rigidity * plate.width * plate.width / (24.0 * (1.0 - plate.poisson) * part.warping)  # G J over 2 (1 - nu) D b
+        stiff = _plate_blocks(basis, _ODD, 3.0 * part.warping / plate.width, plate, half, first=0, shear=edges)
         shares = 1.5 * _across(_ODD).square
         heavy += [{(number, number): (part.inertia * share * half, basis.product(0, 0))} for number, share in enumerate(shares) if number]
     squares, vectors = _modes(_matrix(stiff, fields, size), _matrix(heavy, fields, size), count)
     first, moved = (_transpose(vectors[..., :size, :]) @ basis.at(places) for places in (np.array([_FIRST_LOBE]), stations))
     return _signed(3, squares, moved, None, first)
-
-
-def _edges(part: Torsion, warping: Number) -> Number:
-    """G J over the twist stiffness 2 (1 - nu) D b of a plate without edge shear."""
-    assert part.plate is not None  # noqa: S101  (plates only)
-    return part.rigidity * part.plate.width * part.plate.width / (24.0 * (1.0 - part.plate.poisson) * warping)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,14 +171,13 @@ def _across(degrees: tuple[int, ...]) -> _Across:
 
 
 def _plate_blocks(
-    basis: _Basis, degrees: tuple[int, ...], rigidity: Number, part: Bending | Torsion, *, first: int, shear: Number = 1.0
+    basis: _Basis, degrees: tuple[int, ...], rigidity: Number, plate: Plate, half: Number, *, first: int, shear: Number = 1.0
 ) -> list[dict[tuple[int, int], tuple[Number, Array]]]:
     """Kirchhoff energy of fields across a plate, the first at index `first`: `rigidity` is D times the squared scale of the fields.
 
     `shear` is a factor on the twist energy.
     """
-    assert part.plate is not None  # noqa: S101  (plates only)
-    across, half, poisson, side = _across(degrees), 0.5 * part.length, part.plate.poisson, 0.5 * part.plate.width
+    across, poisson, side = _across(degrees), plate.poisson, 0.5 * plate.width
     blocks: list[dict[tuple[int, int], tuple[Number, Array]]] = []
     for one, other in itertools.combinations_with_replacement(range(len(degrees)), 2):
         place = (first + one, first + other)

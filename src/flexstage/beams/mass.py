@@ -16,7 +16,7 @@ from flexstage.beams.compliance import Law, beam_of, fixed_end_modes, law, law_o
 from flexstage.beams.fixed_end_modes import FixedEndModes, join
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.material import Material
-from flexstage.parts.part import Elastic, Part, Restricted, inner
+from flexstage.parts.part import Part, Restricted, inner
 
 
 @keep
@@ -57,16 +57,11 @@ def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
     >>> bool(np.all(law_and_mass(rod, steel)[0].stiffness == law(rod, steel).stiffness))
     True
     """
-    entry = law_of(part)
-    if entry is None or entry.beam is None or entry.diagonal is not None or isinstance(part, Restricted) or _has_fixed_end_modes(part):
+    entry, modes = law_of(part), getattr(inner(part), "inner_modes", 0)
+    if entry is None or entry.beam is None or entry.diagonal is not None or isinstance(part, Restricted) or modes:
         return law(part, material), mass(part, material)
     beam = beam_of(part, material)
     return Law((1.0 / beam.diagonal())[..., None] * np.eye(6)), consistent_mass(beam)
-
-
-def _has_fixed_end_modes(part: Part) -> bool:
-    own = inner(part)
-    return isinstance(own, Elastic) and own.inner_modes > 0
 
 
 def consistent_mass(beam: Beam) -> Array:

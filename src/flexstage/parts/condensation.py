@@ -277,15 +277,14 @@ def _mass_findings(part: Superelement, seen: Array, span: float) -> tuple[float,
     """Mass, centre and moments from rigid motions (6, 6) about the part's origin, and their errors."""
     along = np.diag(seen)[:3]
     mass = float(np.mean(along))
-    if mass <= 0.0:
-        told = [Finding("mass matrix", f"rigid motions have the mass {mass:.4g} kg", "Export the mass matrix")] if mass < 0.0 else []
-        return mass, np.zeros(3), np.zeros((3, 3)), told + list(_stated_findings(part, mass, np.zeros(3), np.zeros((3, 3)), span))
-    lever = -seen[:3, 3:] / mass
+    lever = -seen[:3, 3:] / mass if mass > 0.0 else np.zeros((3, 3))
     centre = 0.5 * np.array([lever[2, 1] - lever[1, 2], lever[0, 2] - lever[2, 0], lever[1, 0] - lever[0, 1]])
     cross = 0.5 * (lever - lever.T)
-    moments = seen[3:, 3:] - mass * cross.T @ cross
+    moments = seen[3:, 3:] - mass * cross.T @ cross if mass > 0.0 else np.zeros((3, 3))
     findings: list[Finding] = []
-    if np.max(np.abs(seen[:3, :3] - mass * np.eye(3))) > STATED * mass:
+    if mass < 0.0:
+        findings.append(Finding("mass matrix", f"rigid motions have the mass {mass:.4g} kg", "Export the mass matrix"))
+    elif np.max(np.abs(seen[:3, :3] - mass * np.eye(3))) > STATED * mass > 0.0:
         what = f"rigid motions along x, y and z have the masses {along[0]:.6g}, {along[1]:.6g} and {along[2]:.6g} kg, which should be equal"
         findings.append(Finding("mass matrix", what, "Export the whole mass matrix: mass at the ports or in some directions is missing"))
     elif np.max(np.abs(lever + lever.T)) > STATED * span:

@@ -352,22 +352,17 @@ def stations_of(profile: Profile) -> tuple[Array, Array]:
     half = 0.5 * single(length(profile))
     if isinstance(profile, Contour):
         right = np.unique(np.concatenate([start + (end - start) * _SHARES for start, end in pairwise(profile.knots)]))
-        stations = np.concatenate([-right[:0:-1], right])
-        return stations, profile.height(stations)
-    if isinstance(profile, (Circular, Elliptic)):
-        across = single(rise(profile))
-        stations, heights = half * np.sin(_ARC), across * (1.0 - np.cos(_ARC))
+        heights = profile.height(right)
+    elif isinstance(profile, (Circular, Elliptic)):
+        right, heights = half * np.sin(_ARC), single(rise(profile)) * (1.0 - np.cos(_ARC))
     elif isinstance(profile, Filleted):
         radius = single(profile.radius)
-        stations, heights = half - radius + radius * np.sin(_ARC), radius * (1.0 - np.cos(_ARC))
+        arc = _ARC[int(half <= radius) :]
+        right, heights = half - radius + radius * np.sin(arc), radius * (1.0 - np.cos(arc))
     else:
-        stations, heights = np.array([half]), np.array([0.0])
-    keep = stations > 0.0
-    middle = ([0.0], [0.0]) if isinstance(profile, (Circular, Elliptic)) else ([], [])
-    return (
-        np.concatenate([-stations[keep][::-1], middle[0], stations[keep]]),
-        np.concatenate([heights[keep][::-1], middle[1], heights[keep]]),
-    )
+        right, heights = np.array([half]), np.array([0.0])
+    away = right > 0.0
+    return np.concatenate([-right[away][::-1], right]), np.concatenate([heights[away][::-1], heights])
 
 
 def single(value: Number) -> float:

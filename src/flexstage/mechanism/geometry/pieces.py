@@ -6,7 +6,7 @@ Flat faces are exact. Polygons inside the round faces deviate by at most `SAGITT
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise, product
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -22,6 +22,7 @@ from flexstage.parts.shape import Profiled, Shaped
 from flexstage.spatial.convex import Convex, frustum
 
 Form: TypeAlias = Shaped | Solid
+_Slab: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 
 def form_of(part: Part) -> Form | None:
@@ -88,9 +89,16 @@ def _hinge(form: Profiled, trim: float) -> Iterator[Convex]:
         yield from _slab(stations, (form.grown(low), form.grown(high)), angles)
 
 
-def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
-    """Stations and heights of the cuts' inner approximation by tangents at arc midpoints."""
-    half = 0.5 * single(length(profile)) - trim
+def _slabs(profile: Profile, trim: float) -> Iterator[_Slab]:
+    """Stations and heights of the cuts' inner approximation, each slab of the right half followed by its mirror image."""
+    for (here, there), (low, high) in _right(profile, 0.5 * single(length(profile)) - trim):
+        yield (here, there), (low, high)
+        if here >= 0.0:
+            yield (-there, -here), (high, low)
+
+
+def _right(profile: Profile, half: float) -> Iterator[_Slab]:
+    """Slabs of the middle and of the right half, by tangents at arc midpoints."""
     if isinstance(profile, Straight):
         yield (-half, half), (0.0, 0.0)
         return
@@ -104,29 +112,26 @@ def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float],
         yield (-straight, straight), (0.0, 0.0)
     step = 2.0 * np.arccos(max(0.0, 1.0 - SAGITTA / max(along, across)))
     angles = np.linspace(0.0, 0.5 * np.pi, int(np.clip(np.ceil(0.5 * np.pi / step), 4, MOST // 2)) + 1)
-    for (begin, end), side in product(pairwise(angles), (1.0, -1.0)):
+    for begin, end in pairwise(angles):
         here, there = straight + along * np.sin(begin), min(half, straight + along * np.sin(end))
         if there <= here:
             continue
         middle = 0.5 * (begin + end)
         slope = across * np.sin(middle) / (along * np.cos(middle))
         at, height = straight + along * np.sin(middle), across * (1.0 - np.cos(middle))
-        low, high = (max(0.0, height + slope * (x - at)) for x in (here, there))
-        yield ((here, there), (low, high)) if side > 0.0 else ((-there, -here), (high, low))
+        yield (here, there), (max(0.0, height + slope * (here - at)), max(0.0, height + slope * (there - at)))
 
 
-def _chords(contour: Contour, half: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
+def _chords(contour: Contour, half: float) -> Iterator[_Slab]:
     """Chords between stations up to `half`, each lowered to the contour."""
     for start, end in pairwise(contour.knots):
         samples = np.linspace(start, end, 4 * MOST + 1)
         bend = float(np.max(np.abs(np.diff(contour.height(samples), 2)))) * (4.0 * MOST) ** 2
         count = int(np.clip(np.ceil(np.sqrt(bend / (8.0 * SAGITTA))), 2, MOST // 2))
-        for (here, there), side in product(pairwise(np.linspace(start, end, count + 1)), (1.0, -1.0)):
+        for here, there in pairwise(np.linspace(start, end, count + 1)):
             far = min(half, there)
-            if far <= here:
-                continue
-            low, high = _below(contour.height(np.linspace(here, far, 9)))
-            yield ((here, far), (low, high)) if side > 0.0 else ((-far, -here), (high, low))
+            if far > here:
+                yield (here, far), _below(contour.height(np.linspace(here, far, 9)))
 
 
 def _below(heights: Array) -> tuple[float, float]:
