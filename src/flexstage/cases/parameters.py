@@ -57,7 +57,7 @@ def parameter(stage: Mechanism, name: str, where: str = "") -> Parameter:
     return known[name]
 
 
-def with_parameters(stage: Mechanism, stated: Mapping[str, Stated], where: str = "parameters") -> Mechanism:
+def with_parameters(stage: Mechanism, stated: Mapping[str, Stated]) -> Mechanism:
     """Return the case with the parameter values `stated`: strings with units, or numbers or arrays in SI. Formulas are re-evaluated.
 
     Raises `DesignError` with all errors: unknown names, wrong units, values out of bounds.
@@ -68,7 +68,7 @@ def with_parameters(stage: Mechanism, stated: Mapping[str, Stated], where: str =
     """
     findings: list[Finding] = []
     for name, value in stated.items():
-        here = f"{where}.{name}"
+        here = f"parameters.{name}"
         try:
             node = NumberNode(parameter(stage, name, here).quantity)
             stage = set_value(stage, PREFIX + name, node.parse(value, here) if isinstance(value, str) else value)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +62,8 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     (1.03e-05, 'steel, of its solids')
     """
     assembly = expand(mechanism)
-    require(_unknown_growth(assembly))
+    advice = "Compute it in the finite-element program that exported the matrices"
+    require(Finding(name, "thermal expansion of the superelement unknown", advice) for name in assembly.superelements)
     choices = {name: _body_material(mechanism, assembly, name) for name in assembly.bodies}
     floor = ground_of(mechanism, ground)
     if floor.material is not None:
@@ -73,12 +74,6 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     parts = {name: (coefficient(link), span(link.part)) for name, link in drawn.items() if _grows(link)}
     taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
     return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"no expansion, {floor.source}", **taken}, floor)
-
-
-def _unknown_growth(assembly: Assembly) -> Iterator[Finding]:
-    for name in assembly.superelements:
-        what = "thermal expansion of the superelement unknown"
-        yield Finding(name, what, "Compute it in the finite-element program that exported the matrices")
 
 
 def _or_nan(value: Number | None) -> Number:

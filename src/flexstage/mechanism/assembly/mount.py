@@ -32,7 +32,7 @@ from flexstage.mechanism.references import BODIES, SECTIONS, renamed
 from flexstage.parts.body import Body, Inertia, owner_of
 from flexstage.parts.mass import tensor
 from flexstage.parts.material import Material
-from flexstage.spatial.frame import Frame, identity, reflection
+from flexstage.spatial.frame import Frame, reflection
 
 STAGES = "stages"
 """Table of a design file that lists the stages mounted on this stage."""
@@ -220,7 +220,7 @@ def _point(frame: Frame, at: Vector) -> Vector:
 
 def _turned(inertia: Inertia | None, frame: Frame) -> Inertia | None:
     """Moments of inertia in the axes of the carrying stage: R J R^T."""
-    if inertia is None or np.array_equal(frame.rotation, identity().rotation):
+    if inertia is None or np.array_equal(frame.rotation, np.eye(3)):
         return inertia
     matrix = frame.rotation @ tensor(inertia) @ np.swapaxes(frame.rotation, -1, -2)
     moments = [_number(matrix[..., axis, axis]) for axis in range(3)]
