@@ -19,7 +19,9 @@ from flexstage.control.hysteresis.models.inverse import inverse
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.models.scaled import scale_to_stacks
 from flexstage.control.hysteresis.models.shape import major_loop
-from flexstage.control.hysteresis.stack_test import StackTest
+from flexstage.control.hysteresis.stack_test import StackTest, stack_test
+from flexstage.experiment.records.record import Channel as RecordChannel
+from flexstage.experiment.records.record import in_memory
 from flexstage.models.linear.model import Channel
 from tests.laws.preisach import preisach
 
@@ -107,6 +109,19 @@ def test_a_model_is_found_again():
     assert found.model.before.values[0] == pytest.approx(bend.values[0], abs=1e-3)
     fresh = legs([0, 730, 20, 980, 455, 1000, 0], 40)
     assert rms(found.model.run(fresh) - model.run(fresh)) < 1e-8 * STROKE
+
+
+@pytest.mark.parametrize(("volt", "per_volt", "metre", "per_metre"), [("kV", 1e-3, "nm", 1e9), ("mV", 1e3, "mm", 1e3)])
+def test_units_of_a_record_decide_nothing(volt, per_volt, metre, per_metre):
+    volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))
+    strokes = np.where(np.gradient(volts) > 0.0, 0.15e-6 * volts, 0.15e-6 * volts + 4e-11 * volts * (1000.0 - volts))
+    first, other = (
+        stack_test(in_memory([RecordChannel("u", units[0]), RecordChannel("y", units[1])], 100.0, np.column_stack(columns))).hysteresis
+        for units, columns in ((("V", "m"), (volts, strokes)), ((volt, metre), (volts * per_volt, strokes * per_metre)))
+    )
+    assert other.range == pytest.approx(first.range)
+    assert other.model.before.knots == pytest.approx(first.model.before.knots)
+    assert other.width == pytest.approx(first.width)
 
 
 def test_noise_is_not_fitted():

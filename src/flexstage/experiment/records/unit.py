@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 
 from flexstage.base.units import quantity as quantities
-from flexstage.base.units.dimension import Dimension, dimension_of
+from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.quantity import Quantity
 from flexstage.experiment.records.record import Record, changed_samples
 
@@ -92,13 +91,7 @@ def _si(unit: str) -> tuple[str, float]:
     """Coherent SI unit, and the factor to it."""
     if unit_problem(unit) is not None:
         return unit, 1.0
-    dimension = dimension_of(unit)
-    if dimension.size == 1:
-        return unit, 1.0
-    found = _coherent_unit(dimension)
-    return (unit, 1.0) if found is None else (found, float(dimension.size))
-
-
-def _coherent_unit(dimension: Dimension) -> str | None:
     known = [each.si for each in vars(quantities).values() if isinstance(each, Quantity) and each.si != "mixed"]
-    return next((unit for unit in (*known, *_FURTHER) if dimension_of(unit) == Dimension(Fraction(1), dimension.powers)), None)
+    found = next((each for each in (*known, *_FURTHER) if same_dimension(each, unit)), unit)
+    factor = float(dimension_of(unit).size / dimension_of(found).size)
+    return (unit, 1.0) if factor == 1.0 else (found, factor)
