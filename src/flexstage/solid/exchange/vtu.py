@@ -6,7 +6,7 @@ the name that belongs to each number. Components do not share points at their in
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from xml.sax.saxutils import escape
@@ -28,8 +28,6 @@ from flexstage.solid.fea.jobs.remote import Limits, work_all
 from flexstage.solid.fea.meshing.fineness import Fineness
 from flexstage.solid.fea.solver.component import Component, components
 
-_LIMITS = Limits()
-
 
 @dataclass(frozen=True, eq=False)
 class StageMesh:
@@ -41,7 +39,7 @@ class StageMesh:
     pieces: tuple[str, ...]
 
 
-def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMITS, progress: Progress | None = None) -> StageMesh:
+def stage_mesh(mechanism: Mechanism, fineness: Fineness, progress: Progress | None = None) -> StageMesh:
     """Mesh every distinct component once, in a separate process, and place the mesh at every instance of the component.
 
     Raises `DesignError` if the outlines do not form solids or cannot be meshed, and for a stage without any shape.
@@ -55,7 +53,7 @@ def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMIT
     require_solver()
     jobs = [Gridding(content(part), part, fineness) for part in parts]
     own: dict[str, Grid] = {}
-    work_all(distinct(jobs), lambda job, found: own.update({job.key: found}), limits, progress)
+    work_all(distinct(jobs), lambda job, found: own.update({job.key: found}), Limits(), progress)
     numbers = {name: number for number, name in enumerate(stage.pieces)}
     return StageMesh(stage, parts, tuple(_place_mesh(job.component, own[job.key], numbers) for job in jobs), tuple(stage.pieces))
 
@@ -71,26 +69,25 @@ def vtu(mesh: StageMesh) -> bytes:
     Cell data are the numbers `piece`, `body`, `material` and `component`, and `young` [Pa] and `density` [kg/m^3].
     """
     pieces = [mesh.stage.pieces[name] for name in mesh.pieces]
-    bodies = _number_points(piece.owner for piece in pieces)
-    materials = _number_points(mesh.stage.materials[name] for name in mesh.pieces)
+    bodies, body = _numbered([piece.owner for piece in pieces])
+    materials, material = _numbered([mesh.stage.materials[name] for name in mesh.pieces])
     owner = np.concatenate([item.owner for item in mesh.grids])
-    part = np.concatenate([np.full(len(item.owner), number) for number, item in enumerate(mesh.grids)])
-    body = np.array([bodies[piece.owner] for piece in pieces])
-    material = np.array([materials[mesh.stage.materials[name]] for name in mesh.pieces])
     data = {
         "piece": owner,
         "body": body[owner],
         "material": material[owner],
-        "component": part,
+        "component": np.repeat(np.arange(len(mesh.grids)), [len(item.owner) for item in mesh.grids]),
         "young": np.array([piece.medium.young for piece in pieces])[owner],
         "density": np.array([piece.medium.density for piece in pieces])[owner],
     }
-    names = {"piece": mesh.pieces, "body": tuple(bodies), "material": tuple(materials)}
-    return _comment(_write_xml(mesh.grids, data), {**names, "component": tuple(each.name for each in mesh.components)})
+    names = {"piece": mesh.pieces, "body": bodies, "material": materials, "component": [each.name for each in mesh.components]}
+    return _comment(_write_xml(mesh.grids, data), names)
 
 
-def _number_points(names: Iterable[str]) -> dict[str, int]:
-    return {name: number for number, name in enumerate(dict.fromkeys(names))}
+def _numbered(names: Sequence[str]) -> tuple[list[str], Array]:
+    """The distinct names, and the number of each name."""
+    distinct = list(dict.fromkeys(names))
+    return distinct, np.array([distinct.index(name) for name in names])
 
 
 def _write_xml(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:

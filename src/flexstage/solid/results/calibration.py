@@ -83,23 +83,18 @@ def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
     >>> stand_ins({})
     {}
     """
-    parts: dict[str, ComplianceMatrix] = {}
-    findings: list[Finding] = []
-    for name, hinge in found.items():
-        matrix = _symmetrise(hinge)
-        if hinge.error is None or hinge.error > _LARGEST_ERROR:
-            findings.append(_doubt(name, hinge.error))
-            continue
-        parts[name] = ComplianceMatrix(
-            compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in matrix),
+    require(_doubt(name, hinge.error) for name, hinge in found.items() if hinge.error is None or hinge.error > _LARGEST_ERROR)
+    return {
+        name: ComplianceMatrix(
+            compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in _symmetrise(hinge)),
             free=hinge.form.part.intended,
             mass=_mass(hinge),
             origin=Origin.FEA,
             source=_source(hinge),
             replaces=hinge.shared + KEPT,
         )
-    require(findings)
-    return parts
+        for name, hinge in found.items()
+    }
 
 
 def _doubt(name: str, error: float | None) -> Finding:

@@ -118,11 +118,7 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
     `ways` specifies cache, progress and processes. Every hinge is computed once, in parallel with the other hinges.
     """
     required = accuracy_of(accuracy, order)
-
-    def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
-        return hinges_from_cache(forms, required, ways)
-
-    return compute
+    return lambda forms: hinges_from_cache(forms, required, ways)
 
 
 def accuracy_of(accuracy: float, order: int | None) -> Accuracy:

@@ -157,7 +157,7 @@ def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
         statics=statics(read.model),
         modes=found,
         stress=stress,
-        worst=None if corners is None or stress is None else corners[0][:, stress.case[stress.names.index(stress.weakest)]],
+        worst=None if corners is None or stress is None else corners[0][:, stress.worst_case],
         blocks=block_energy(read.model, found.shapes),
         read=read,
     )
@@ -183,8 +183,7 @@ def worst_strokes(stage: SolidStage) -> dict[str, float]:
     if stage.stress is None:
         return {}
     limits = stroke_limits(stage.read.mechanism).from_zero
-    case = int(stage.stress.case[stage.stress.names.index(stage.stress.weakest)])
-    return dict(zip(limits.actuators, (float(value) for value in limits.corners[case]), strict=True))
+    return dict(zip(limits.actuators, limits.corners[stage.stress.worst_case].tolist(), strict=True))
 
 
 def block_energy(model: LinearModel, shapes: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -45,19 +45,28 @@ class LinkStress(InNotebook):
     @property
     def weakest(self) -> str:
         """Name of the link or body with the smallest safety factor, or with the highest stress if no yield stress is known."""
+        return self.names[self._weakest]
+
+    @property
+    def worst_case(self) -> int:
+        """Load case with the highest stress of the weakest link or body."""
+        return int(self.case[self._weakest])
+
+    @property
+    def _weakest(self) -> int:
         safety = self.safety
-        return self.names[int(np.argmax(self.highest) if np.isnan(safety).all() else np.nanargmin(safety))]
+        return int(np.argmax(self.highest) if np.isnan(safety).all() else np.nanargmin(safety))
 
     @property
     def peak(self) -> Annotated[float, INNER, PRESSURE, Heading("stress", digits=4)]:
         """Highest stress of the weakest link or body [Pa]; zero below 1 kPa."""
-        found = self.at(self.weakest)
+        found = float(self.highest[self._weakest])
         return found if found >= SILENT else 0.0
 
     @property
     def least_safety(self) -> Annotated[float, INNER, RATIO, Heading("safety", digits=4)]:
         """Safety factor of the weakest link or body; NaN without stress."""
-        return float(self.safety[self.names.index(self.weakest)]) if self.peak else np.nan
+        return float(self.safety[self._weakest]) if self.peak else np.nan
 
     def largest(self, count: int) -> LinkStress:
         """Select the links and bodies with the highest stress, highest first, at most `count`."""
@@ -84,16 +93,13 @@ def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) ->
     return LinkStress(tuple(names), np.array(highest), np.array(case), np.array(limits))
 
 
-def _component(item: Placed, coordinates: Array, assembly: Assembly) -> list[tuple[str, float, int]]:
-    rows: list[tuple[str, float, int]] = []
+def _component(item: Placed, coordinates: Array, assembly: Assembly) -> Iterator[tuple[str, float, int]]:
     chosen = [(name, at) for name, at in piece_vertices(item) if name not in assembly.links or not _is_stack(assembly, name)]
-    if not chosen:
-        return rows
-    worst = np.array([von_mises(stresses(item, coordinates[:, [case]])[:, :, 0]) for case in range(coordinates.shape[1])])
-    for name, at in chosen:
-        highest = worst[:, at].max(axis=1)
-        rows.append((name, float(highest.max()), int(np.argmax(highest))))
-    return rows
+    if chosen:
+        worst = np.array([von_mises(stresses(item, coordinates[:, [case]])[:, :, 0]) for case in range(coordinates.shape[1])])
+        for name, at in chosen:
+            highest = worst[:, at].max(axis=1)
+            yield name, float(highest.max()), int(np.argmax(highest))
 
 
 def _is_stack(assembly: Assembly, name: str) -> bool:

@@ -12,6 +12,7 @@ from flexstage.show.table import Cell, Column, Mark, Table, array_table, make_ta
 from flexstage.solid.fea.hinges.hinge_form import NO_ESTIMATE
 from flexstage.solid.fea.solver.ties import in_words
 from flexstage.solid.results.stress import SHARP_CORNERS, SILENT
+from flexstage.spatial.frame import COMPONENTS
 
 if TYPE_CHECKING:
     from flexstage.solid.results.calibration import Calibration
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from flexstage.solid.results.units import SolidUnit
     from flexstage.solid.results.verification import Row, Verification
 
-_AXES = ("x", "y", "z", "rx", "ry", "rz")
 _LISTED = 12
 
 
@@ -46,7 +46,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
         )
         for name, hinge in found.items()
     ]
-    heads = [*(Column(axis, form.unit) for axis, form in zip(_AXES, forms, strict=True)), Column("error")]
+    heads = [*(Column(axis, form.unit) for axis, form in zip(COMPONENTS, forms, strict=True)), Column("error")]
     note = (
         "Compliance of the hinge between the ends of its arcs, about its centre, in its link frame. Error: largest estimate for any entry. "
         "The compliance of roots at blocks is included; the ground and bodies without outlines are rigid. "
@@ -90,14 +90,14 @@ def command_table(name: str, unit: SolidUnit) -> Table:
     return array_table(f"Output and lost motion of the {name} unit over its stroke", unit, "strokes", "commands", "outputs", "lost")
 
 
-def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -> Table | None:
+def stress_table(title: str, stress: LinkStress | None) -> Table | None:
     """Tabulate the highest von Mises stress of links and bodies, highest first; `None` without significant stress."""
     if stress is None or not np.max(stress.highest) >= SILENT:
         return None
     notes = [f"Von Mises stress on the surface; stacks are left out. {SHARP_CORNERS}"]
-    if len(stress.names) > listed:
-        notes.append(f"Not listed: {len(stress.names) - listed} more links or bodies with lower stress.")
-    return row_table(title, stress.largest(listed), "highest", "yield_stress", "safety", head="link or body", notes=notes)
+    if len(stress.names) > _LISTED:
+        notes.append(f"Not listed: {len(stress.names) - _LISTED} more links or bodies with lower stress.")
+    return row_table(title, stress.largest(_LISTED), "highest", "yield_stress", "safety", head="link or body", notes=notes)
 
 
 def block_table(stage: SolidStage) -> Table:
@@ -152,6 +152,6 @@ def calibration_table(found: Calibration) -> Table:
         )
         for name, values in found.over_beam_theory.items()
     ]
-    heads = ["part", "links", *(Column(axis) for axis in _AXES), Column("FEA error")]
+    heads = ["part", "links", *(Column(axis) for axis in COMPONENTS), Column("FEA error")]
     note = "Positive: FEA is softer. - %: value of beam theory, because FEA cannot separate the hinge from the adjacent blocks."
     return make_table("Difference in compliance between FEA and beam theory", heads, rows, notes=[note])

@@ -100,20 +100,18 @@ def _group(name: str) -> str:
 
 def _link_answers(piece: Piece, first: _End, second: _End) -> Iterator[Answer]:
     shape, half = draw_form(piece.form), 0.5 * span(piece.form) * MILLIMETRES
-    drawn_ends = [end for end in (first, second) if end.pieces]
-    solids = {end.side: unite(end.pieces) for end in drawn_ends}
-    meetings = {end.side: _meeting(shape, half, end.side, solids[end.side]) for end in drawn_ends}
-    bad = [end for end in drawn_ends if not meetings[end.side].sound]
-    if bad and all(_meeting(shape, half, -end.side, solids[end.side]).sound for end in drawn_ends):
+    solids = [(end, unite(end.pieces)) for end in (first, second) if end.pieces]
+    met = [(end, solid, _meeting(shape, half, end.side, solid)) for end, solid in solids]
+    if not all(meeting.sound for *_, meeting in met) and all(_meeting(shape, half, -end.side, solid).sound for end, solid in solids):
         yield (
             f"it is drawn from {second.body} to {first.body}, but joins {first.body} to {second.body}",
             "Reverse `along`, or exchange the two bodies",
         )
         return
-    for end in drawn_ends:
-        yield from _end_answers(end, meetings[end.side])
-        if meetings[end.side].sound:
-            yield from _side_answers(shape, half, end, solids[end.side])
+    for end, solid, meeting in met:
+        yield from _end_answers(end, meeting)
+        if meeting.sound:
+            yield from _side_answers(shape, half, end, solid)
 
 
 def _meeting(shape: occ.TopoDS_Shape, half: float, side: float, solid: occ.TopoDS_Shape) -> _Meeting:

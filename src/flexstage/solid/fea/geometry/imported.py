@@ -12,7 +12,7 @@ import numpy as np
 from netgen import occ
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
-from flexstage.base.number import Array, stack
+from flexstage.base.number import Array, Number, stack
 from flexstage.base.storage.files import require_regular
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Imported, Inertia
@@ -137,19 +137,19 @@ def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Fin
         yield from (Finding(f"{where}.sha256", each.what, each.advice) for each in _version_findings(path, solid.sha256))
         return
     density, longest = float(np.real(mechanism.materials[solid.material].density)), float(np.max(found.size))
-    mass, moment = density * found.volume, density * float(np.max(np.linalg.eigvalsh(found.inertia)))
-    pairs = (
-        ("size", stack(solid.size), found.size, longest, "m"),
-        ("middle", stack(solid.middle), found.middle, longest, "m"),
-        ("mass", np.array([solid.mass]), np.array([mass]), mass, "kg"),
-        ("centre", stack(solid.centre), found.centre, longest, "m"),
-        ("inertia", tensor(solid.inertia), density * found.inertia, moment, "kg m^2"),
-    )
-    for name, said, true, scale, unit in pairs:
+    measured, moment = with_properties(found, solid.file, solid.material, density), float(np.max(np.linalg.eigvalsh(found.inertia)))
+    scales = {"size": longest, "middle": longest, "mass": measured.mass, "centre": longest, "inertia": density * moment}
+    for name, scale in scales.items():
+        said, true = (_values(getattr(each, name)) for each in (solid, measured))
+        unit = {"mass": "kg", "inertia": "kg m^2"}.get(name, "m")
         off = float(np.max(np.abs(np.real(said) - true)))
         if off > TOLERANCE * scale:
             what = f"differs from the file by {off:.4g} {unit} (got {_text(said)}, expected {_text(true)} {unit})"
             yield Finding(f"{where}.{name}", what, 'Use the value of the file (see "flexstage import")')
+
+
+def _values(value: Number | tuple[Number, ...] | Inertia) -> Array:
+    return tensor(value) if isinstance(value, Inertia) else stack(value) if isinstance(value, tuple) else np.asarray(value)
 
 
 def _text(values: Array) -> str:

@@ -121,7 +121,8 @@ def medium(material: Material, rotation: Array | None = None) -> Medium:
     density = _single(material.density)
     if not material.is_cubic:
         return Medium(_single(material.modulus), _single(material.contraction), density)
-    seen = material.tensor if rotation is None and isinstance(material, Oriented) else material.stiffness_tensor(_stage(rotation))
+    in_stage = np.eye(3) if rotation is None else rotation
+    seen = material.tensor if rotation is None and isinstance(material, Oriented) else material.stiffness_tensor(in_stage)
     unit = 10 ** (int(np.log10(np.max(np.real(seen)))) - _DIGITS)
     tensor = np.round(np.real(seen) / unit) * unit + 0.0
     soft = np.linalg.inv(tensor)
@@ -140,10 +141,6 @@ def is_mirrored(own: Medium, axis: int) -> bool:
     odd = np.array([(pair.count(axis) % 2) for pair in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))], dtype=bool)
     crossed = np.array(own.tensor)[np.ix_(odd, ~odd)]
     return bool(np.max(np.abs(crossed)) < _CROSSED * own.tensor[0][0])
-
-
-def _stage(rotation: Array | None) -> Array:
-    return np.eye(3) if rotation is None else rotation
 
 
 def stack_medium(stack: Piezo) -> Medium:

@@ -280,13 +280,11 @@ def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list
     """Sizes of the pieces of a face: links that contain it entirely, bodies that contain its centre."""
     centre = coordinates(face.center)[None] / MILLIMETRES
     corners = np.array([coordinates(vertex.p) for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
-    held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
-    # A wall of a block around the end of a hinge has its centre on the hinge.
-    whole = [piece.body is not None or bool(np.all(region(piece, corners) <= _WITHIN)) for piece in pieces]
     return [
         size * _thicker(piece, centre)
-        for piece, size, centred, all_of_it in zip(pieces, sizes, held, whole, strict=True)
-        if centred and all_of_it
+        for piece, size in zip(pieces, sizes, strict=True)
+        # A wall of a block around the end of a hinge has its centre on the hinge.
+        if region(piece, centre)[0] <= _WITHIN and (piece.body is not None or np.all(region(piece, corners) <= _WITHIN))
     ]
 
 

@@ -356,15 +356,13 @@ def _resultant(model: _Model, name: str) -> tuple[Array, Array]:
 def _rigid(model: _Model) -> Array:
     """Motion (N, 6) of bodies and joints with the ground; internal coordinates are zero (exact if nothing inside is fixed)."""
     centre = model.assembly.bodies[PLATFORM].reference
-    result = np.zeros((model.size, 6))
-    for body in model.assembly.bodies:
-        if body in model.blocks:
-            result[model.blocks[body]] = transport(model.assembly.bodies[body].reference - centre)
+    places = {name: body.reference for name, body in model.assembly.bodies.items()}
     for item in model.placed:
-        for interface in item.component.interfaces:
-            if interface.joint.name in model.blocks:
-                at = item.component.place.point(interface.joint.frame.position)
-                result[model.blocks[interface.joint.name]] = transport(at - centre)
+        places |= {each.joint.name: item.component.place.point(each.joint.frame.position) for each in item.component.interfaces}
+    result = np.zeros((model.size, 6))
+    for name, place in places.items():
+        if name in model.blocks:
+            result[model.blocks[name]] = transport(place - centre)
     return result
 
 

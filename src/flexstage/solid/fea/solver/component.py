@@ -136,9 +136,11 @@ def with_yielding_ends(component: Component) -> Component:
     stacks = {piece.name for piece in component.pieces if isinstance(piece.form, Piezo)}
     if not component.bodies:
         return component
-    own = (item.footprint is None and item.joint.link not in stacks for item in component.interfaces)
     return replace(
-        component, interfaces=tuple(replace(item, yields=item.yields or end) for item, end in zip(component.interfaces, own, strict=True))
+        component,
+        interfaces=tuple(
+            replace(item, yields=item.yields or (item.footprint is None and item.joint.link not in stacks)) for item in component.interfaces
+        ),
     )
 
 

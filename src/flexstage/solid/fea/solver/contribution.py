@@ -88,15 +88,13 @@ def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iter
 def _group_by_law(groups: Sequence[Group]) -> list[list[Group]]:
     """The groups in few sets without a common degree of freedom within a set."""
     sets: list[list[Group]] = []
-    taken: list[Array] = []
     for group in groups:
-        place = next((number for number, degrees in enumerate(taken) if not (degrees & group.degrees).any()), None)
-        if place is None:
+        apart = (each for each in sets if not any((other.degrees & group.degrees).any() for other in each))
+        found = next(apart, None)
+        if found is None:
             sets.append([group])
-            taken.append(group.degrees)
         else:
-            sets[place].append(group)
-            taken[place] = taken[place] | group.degrees
+            found.append(group)
     return sets
 
 

@@ -117,9 +117,8 @@ def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) ->
     Its strains are the port twists relative to the first port, then m mode amplitudes `inner` (m, N).
     """
     found = _condensed(element)
-    names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
-    moved = [twist(name, port.body, port.frame) for name, port in zip(names, ports, strict=True)]
+    moved = [twist(f"{element.name}.{name}:{port.body}", port.body, port.frame) for name, port in element.ports.items()]
     size, modes = 6 * len(ports) - 6, len(found.squares)
     law = np.zeros((size + modes, size + modes))
     law[:size, :size], law[size:, size:] = found.stiffness, np.diag(found.squares)
