@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
@@ -74,28 +74,20 @@ class Scope(Enum):
     STAGE = "stage"
 
 
-Accuracy: TypeAlias = Annotated[
-    str, typer.Option("--accuracy", metavar="SHARE", help="Permitted relative error of stiffness, gain and frequency.")
-]
-Order: TypeAlias = Annotated[
-    int | None,
-    order_option(
-        min=2, help="Polynomial order of the elements. Default: increased until the required accuracy is reached.", show_default=False
-    ),
-]
-Memory: TypeAlias = Annotated[
-    str | None,
-    text_option("--memory", "SIZE", 'Memory limit, e.g. "8 GB". Default: 90 % of the free memory.'),
-]
-
-
 @dataclass(frozen=True)
 class SolidOptions:
     """Accuracy of a solid study, and its resources."""
 
-    accuracy: Accuracy = "1 %"
-    order: Order = None
-    memory: Memory = None
+    accuracy: Annotated[
+        str, typer.Option("--accuracy", metavar="SHARE", help="Permitted relative error of stiffness, gain and frequency.")
+    ] = "1 %"
+    order: Annotated[
+        int | None,
+        order_option(
+            min=2, help="Polynomial order of the elements. Default: increased until the required accuracy is reached.", show_default=False
+        ),
+    ] = None
+    memory: Annotated[str | None, text_option("--memory", "SIZE", 'Memory limit, e.g. "8 GB". Default: 90 % of the free memory.')] = None
 
     @property
     def resolution(self) -> Resolution:

@@ -58,9 +58,12 @@ def surfaces(placed: Sequence[Placed], motions: Sequence[Motion]) -> Mapping[str
     """
     found: dict[str, Surface] = {}
     for item in placed:
-        still = vertex_places(item, np.zeros(item.operator.shape[1]), 0.0)
+        still, skin = vertex_places(item, np.zeros(item.operator.shape[1]), 0.0), item.element.skin
         shifts = np.array([vertex_places(item, motion.coordinates, 1.0) - still for motion in motions]).reshape(-1, *still.shape)
-        found |= _split_surface(item, still, shifts)
+        for name, numbers in groups(item.component).items():
+            triangles = skin.triangles[np.isin(skin.owner, numbers)]
+            if len(triangles):
+                found[name] = surface_of(triangles, still, shifts, is_body=name in item.component.bodies)
     if not found:
         return found
     everything = np.vstack([each.vertices for each in found.values()])
@@ -70,14 +73,15 @@ def surfaces(placed: Sequence[Placed], motions: Sequence[Motion]) -> Mapping[str
     return {name: Surface(each.vertices, each.triangles, scale * each.shifts, each.is_body) for name, each in found.items()}
 
 
-def _split_surface(item: Placed, vertices: Array, shifts: Array) -> dict[str, Surface]:
-    skin = item.element.skin
-    result: dict[str, Surface] = {}
-    for name, numbers in groups(item.component).items():
-        used, triangles = np.unique(skin.triangles[np.isin(skin.owner, numbers)], return_inverse=True)
-        if len(used):
-            result[name] = Surface(vertices[used], triangles.reshape(-1, 3), shifts[:, used], name in item.component.bodies)
-    return result
+def surface_of(triangles: Array, vertices: Array, shifts: Array, *, is_body: bool) -> Surface:
+    """Return the surface of some triangles of a mesh, with the vertices that they use.
+
+    >>> found = surface_of(np.array([[1, 2, 3]]), np.eye(4, 3), np.zeros((2, 4, 3)), is_body=True)
+    >>> found.triangles.tolist(), found.shifts.shape
+    ([[0, 1, 2]], (2, 3, 3))
+    """
+    used, corners = np.unique(triangles, return_inverse=True)
+    return Surface(vertices[used], corners.reshape(-1, 3), shifts[:, used], is_body)
 
 
 def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) -> bytes:

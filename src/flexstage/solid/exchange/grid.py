@@ -15,9 +15,9 @@ from flexstage.solid.fea.meshing.fineness import Fineness
 if TYPE_CHECKING:
     from flexstage.solid.fea.meshing.mesh import PieceMesh
 
-_CORNERS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
+_CORNERS = np.array([(0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)])
 _ORDER = (1, 0, 2, 3)
-"""Corners in the order of VTK, whose tetrahedra have the opposite orientation."""
+"""Corners in the order of VTK, whose tetrahedra have the opposite orientation: their places, and their numbers here."""
 _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 """Edges in the order of VTK."""
 
@@ -60,8 +60,7 @@ def grid(mesh: PieceMesh) -> Grid:
     from flexstage.solid.fea.geometry.piece import MILLIMETRES
 
     elements = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.mesh.Elements(ngsolve.VOL)])[:, _ORDER]
-    corners = np.array(_CORNERS)[list(_ORDER)]
-    middles = np.array([0.5 * (corners[one] + corners[other]) for one, other in _EDGES])
+    middles = np.array([0.5 * (_CORNERS[one] + _CORNERS[other]) for one, other in _EDGES])
     ends = np.sort(np.stack([elements[:, edge] for edge in _EDGES], axis=1), axis=2)
     _, first, number = np.unique(ends.reshape(-1, 2), axis=0, return_index=True, return_inverse=True)
     rule = ngsolve.IntegrationRule([tuple(point) for point in middles.tolist()], [0.0] * len(middles))

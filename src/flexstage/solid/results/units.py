@@ -128,7 +128,9 @@ def _unit(mechanism: Mechanism, unit: str, copy: str, direction: Array, *, reduc
     gain = float(along @ stiffness.values @ driven) / axial
     guide = stiffness.values @ (along * gain - driven)
     full = full_stroke(mechanism, copy)
-    motion = full * _full_motion(read, copy, guide)
+    platform = read.model.output[read.model.output_index(_TWIST)]
+    load = read.model.input_matrix[:, read.model.input_index((copy,))[0]] + platform.T @ guide
+    motion = full * displacement(read.model, load[:, None])[:, 0]
     return SolidUnit(
         unit=unit,
         copy=copy,
@@ -141,14 +143,6 @@ def _unit(mechanism: Mechanism, unit: str, copy: str, direction: Array, *, reduc
         motion=motion,
         read=read,
     )
-
-
-def _full_motion(read: SolidRead, copy: str, guide: Array) -> Array:
-    """Coordinates (N,) under a unit stroke with an output guided by a wrench (6,)."""
-    model = read.model
-    platform = model.output[model.output_index(_TWIST)]
-    load = model.input_matrix[:, model.input_index((copy,))[0]] + platform.T @ guide
-    return displacement(model, load[:, None])[:, 0]
 
 
 def full_stroke(mechanism: Mechanism, copy: str) -> float:

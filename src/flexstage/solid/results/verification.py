@@ -125,7 +125,8 @@ class Row:
             return TheoryCheck.EITHER
         if away <= _CLOSE:
             return TheoryCheck.THEORY
-        if self.calibrated is not None and abs(_relative(self.calibrated, self.fea)) <= _CLOSE + self.fea_error:
+        better = self.calibrated_difference
+        if better is not None and abs(better) <= _CLOSE + self.fea_error:
             return TheoryCheck.CALIBRATED
         return TheoryCheck.FEA
 
@@ -202,7 +203,7 @@ def verify(
             work_ahead(verification_plan(mechanism, asked, ways, Accuracy()), ways)
             return verify(mechanism, asked, solids(ways), hinges(ways=ways), tell)
     missing = dict[str, str]()
-    notify = tell or _ignore
+    notify = tell or (lambda _rows: None)
     found = solid_hinges(mechanism, compute)
     of_hinges = tuple(hinge_rows(mechanism, found))
     notify(of_hinges)
@@ -218,10 +219,6 @@ def verify(
     of_units = () if alone is None else tuple(unit_rows(mechanism, units_with_calibrated_hinges(mechanism, compute), alone))
     notify(of_units)
     return Verification(mechanism, (*of_hinges, *of_units, *of_stage), found, alone, stage, missing)
-
-
-def _ignore(_rows: tuple[Row, ...]) -> None:
-    """Ignore the rows."""
 
 
 def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:

@@ -52,7 +52,7 @@ def glb_of(data: StageData, modes: int = 12) -> bytes:
 
 def _surfaces(data: StageData, motions: Sequence[Motion]) -> Iterator[tuple[str, Surface]]:
     """The surface of each body, with all its drawn parts, and of each link and gauge, by name."""
-    from flexstage.solid.exchange.gltf import Surface
+    from flexstage.solid.exchange.gltf import surface_of
 
     mesh = data.mesh
     owners = [_owner(data, thing) for thing in data.things]
@@ -63,9 +63,8 @@ def _surfaces(data: StageData, motions: Sequence[Motion]) -> Iterator[tuple[str,
     shifts = np.stack([np.zeros_like(mesh.points), *moved])[1:]
     for number, name in enumerate(names):
         triangles = mesh.triangles[own[mesh.triangles[:, 0]] == number]
-        used, corners = np.unique(triangles, return_inverse=True)
-        if len(used):
-            yield name, Surface(mesh.points[used], corners.reshape(-1, 3), shifts[:, used], name in data.bodies)
+        if len(triangles):
+            yield name, surface_of(triangles, mesh.points, shifts, is_body=name in data.bodies)
 
 
 def _owner(data: StageData, thing: DrawnEntry) -> str:

@@ -191,11 +191,8 @@ def _distance(face: occ.Face, origin: Array) -> float:
 
 def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
     """Whether all of the face lies in the plane through `origin`."""
-
-    def lies_there(point: occ.gp_Pnt) -> bool:
-        return abs(float(normal @ (coordinates(point) - origin))) <= _TOLERANCE
-
-    return all(lies_there(vertex.p) for vertex in face.vertices) and lies_there(face.center)
+    points = (*(vertex.p for vertex in face.vertices), face.center)
+    return all(abs(float(normal @ (coordinates(point) - origin))) <= _TOLERANCE for point in points)
 
 
 def region(piece: Piece, points: Array) -> Array:

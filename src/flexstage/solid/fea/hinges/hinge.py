@@ -256,19 +256,18 @@ def _law(part: Shaped, space: Field) -> Array:
     return _symmetrise(law)
 
 
-def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
+def hinge_mesh(part: Shaped, order: int = 5) -> ngsolve.Mesh:
     """Return a mesh [mm] of a hinge with stubs, whose outer faces are `start` and `end`. No element is inverted at any order up to `order`.
 
-    For an isotropic material, only a symmetric portion is meshed: the quarter at positive y and z, or half of a leaf. Elements are `factor`
-    times the usual size. If the mesher fails or an element is inverted, a few other sizes are tried. Raises `DesignError` if meshing fails
-    with all sizes.
+    For an isotropic material, only a symmetric portion is meshed: the quarter at positive y and z, or half of a leaf. If the mesher fails
+    or an element is inverted, a few other sizes are tried. Raises `DesignError` if meshing fails with all sizes.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
     >>> hinge_mesh(Neck("steel", 1e-3, Straight(1e-3), width=1e-3)).GetMaterials()
     ('medium 0',)
     """
-    return _mesh(_Subject.of(part, Medium(1.0, 0.0, 1.0), stub, own_roots(part)), factor, order).mesh
+    return _mesh(_Subject.of(part, Medium(1.0, 0.0, 1.0), None, own_roots(part)), 1.0, order).mesh
 
 
 def _mesh(subject: _Subject, factor: float, order: int) -> PieceMesh:
