@@ -45,10 +45,11 @@ def cad(
 
     Gaps, overlaps and nearly coincident faces are errors with --mesh and --gltf, otherwise warnings.
     """
-    if output is None and mesh is None and gltf is None:
+    targets = {"--output": output, "--mesh": mesh, "--gltf": gltf}
+    if not any(targets.values()):
         raise refuse("--output", "missing", "Use -o stage.step, --mesh stage.vtu or --gltf stage.glb")
-    mechanism = open_design(design, changes, [("--output", output), ("--mesh", mesh), ("--gltf", gltf)])
-    for path, option, content in _contents(mechanism, {"--output": output, "--mesh": mesh, "--gltf": gltf}, order, modes):
+    mechanism = open_design(design, changes, list(targets.items()))
+    for path, option, content in _contents(mechanism, targets, order, modes):
         save(path, content, option)
 
 

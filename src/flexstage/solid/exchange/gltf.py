@@ -98,7 +98,7 @@ def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) ->
     targets = [printable(motion.name) for motion in motions]
     for name, surface in shown.items():
         _add_node(document, buffer, printable(name), surface, colour=colours.get(name, _LINK), targets=targets)
-    if shown:
+    if shown and motions:
         _add_animations(document, buffer, motions)
     members = list(range(len(document.nodes)))
     document.nodes.append(gl.Node(name=printable(stage), children=members, rotation=_UPRIGHT))
@@ -148,8 +148,6 @@ def _add_node(document: gl.GLTF2, buffer: _Buffer, name: str, surface: Surface, 
 
 
 def _add_animations(document: gl.GLTF2, buffer: _Buffer, motions: Sequence[Motion]) -> None:
-    if not motions:
-        return
     times = np.linspace(0.0, _SECONDS, _KEYS)
     start = buffer.put(times.astype(np.float32), gl.SCALAR)
     nodes = range(len(document.nodes))

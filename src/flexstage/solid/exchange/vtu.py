@@ -54,13 +54,11 @@ def stage_mesh(mechanism: Mechanism, fineness: Fineness, progress: Progress | No
     jobs = [Gridding(content(part), part, fineness) for part in parts]
     own: dict[str, Grid] = {}
     work_all(distinct(jobs), lambda job, found: own.update({job.key: found}), Limits(), progress)
-    numbers = {name: number for number, name in enumerate(stage.pieces)}
-    return StageMesh(stage, parts, tuple(_place_mesh(job.component, own[job.key], numbers) for job in jobs), tuple(stage.pieces))
-
-
-def _place_mesh(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
-    names = np.array([numbers[piece.name] for piece in part.pieces])
-    return Grid(part.place.point(own.points), own.cells, names[own.owner])
+    names, grids = list(stage.pieces), list[Grid]()
+    for part, job in zip(parts, jobs, strict=True):
+        grid, numbers = own[job.key], np.array([names.index(piece.name) for piece in part.pieces])
+        grids.append(Grid(part.place.point(grid.points), grid.cells, numbers[grid.owner]))
+    return StageMesh(stage, parts, tuple(grids), tuple(names))
 
 
 def vtu(mesh: StageMesh) -> bytes:

@@ -77,7 +77,7 @@ class SolidHinge(DistinctHinge, InNotebook):
         large numbers, for which beam theory of the stubs is too inaccurate.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
-        return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
+        return tuple((own >= (1.0 - _MOST_STUB) * whole).tolist())
 
     @property
     def error(self) -> Annotated[float | None, RATIO]:
@@ -147,18 +147,18 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
     """
     shape = with_drawn_parts(mechanism)
     assembly = expand(shape)
-    forms: dict[str, HingeForm] = {}
-    alike: dict[str, list[PlacedLink]] = {}
+    alike: dict[str, tuple[HingeForm, list[PlacedLink]]] = {}
     for link in assembly.links.values():
         if isinstance(link.part, Shaped) and link.material is not None:
             form = HingeForm(link.part, link.material, roots_of(assembly, link))
             whole = "" if link.of is None else link.link.part
             key = f"{digest(form.part, physics=True)} {digest(form.material, physics=True)} {form.roots} {whole}"
-            forms[key] = form
-            alike.setdefault(key, []).append(link)
-    links = {key: tuple(dict.fromkeys(link.drawn for link in each)) for key, each in alike.items()}
-    names = {key: _name(shape, each, list(alike.values())) for key, each in alike.items()}
-    return {names[key]: DistinctHinge(each[0].link.part, forms[key], links[key]) for key, each in alike.items()}
+            alike.setdefault(key, (form, []))[1].append(link)
+    everything = [links for _, links in alike.values()]
+    return {
+        _name(shape, links, everything): DistinctHinge(links[0].link.part, form, tuple(dict.fromkeys(link.drawn for link in links)))
+        for form, links in alike.values()
+    }
 
 
 def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:

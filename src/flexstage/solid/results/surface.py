@@ -43,12 +43,8 @@ def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]
     assembly = expand(read.mechanism)
     factor, _ = magnification(read, motion)
     by_link = {assembly.actuators[name]: np.array([value]) for name, value in strokes.items()}
-    found: list[Surface] = []
-    for item in read.placed:
-        own = element_coordinates(item, motion[:, None], by_link)
-        values = von_mises(stresses(item, own)[:, :, 0])
-        found.append(Surface(vertex_places(item, motion, factor), item.element.skin.triangles, values))
-    return tuple(found)
+    found = [(item, von_mises(stresses(item, element_coordinates(item, motion[:, None], by_link))[:, :, 0])) for item in read.placed]
+    return tuple(Surface(vertex_places(item, motion, factor), item.element.skin.triangles, values) for item, values in found)
 
 
 def magnification(read: SolidRead, motion: Array) -> tuple[float, float]:

@@ -38,9 +38,10 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None 
 
     Stages with imported solids are always checked, because their files may change.
     """
-    known = cache is not None and _is_known(mechanism, cache)
-    (found,) = ((),) if known else contacts_apart([mechanism], pool=pool)
-    if cache is not None and not known:
+    if cache is not None and _is_known(mechanism, cache):
+        return ()
+    (found,) = contacts_apart([mechanism], pool=pool)
+    if cache is not None:
         _remember(mechanism, cache, found)
     return found
 
