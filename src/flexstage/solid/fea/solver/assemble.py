@@ -29,7 +29,7 @@ from flexstage.models.linear.model import Contribution, LinearModel, assemble
 from flexstage.parts.part import actuator_of
 from flexstage.solid.fea.meshing.fineness import WARPS
 from flexstage.solid.fea.solver.casing import casing, end_face_twist
-from flexstage.solid.fea.solver.component import Component, Interface, Joint, groups, is_elastic
+from flexstage.solid.fea.solver.component import Component, Joint, groups, is_elastic
 from flexstage.solid.fea.solver.superelement import Superelement
 from flexstage.solid.fea.solver.ties import (
     ShapelessContribution,
@@ -194,27 +194,19 @@ def _coordinates(assembly: Assembly, parts: tuple[tuple[Component, Superelement]
             joint = item.joint
             if joint.name not in blocks and is_elastic(assembly, joint.body):
                 add(joint.name, [f"{joint.name}.{name}" for name in COMPONENTS])
-            if _yielding_coordinates(item, element) and _warps(joint) not in blocks:
+            if item.yields and element.warps and _warps(joint) not in blocks:
                 add(_warps(joint), [f"{joint.name}.warp{number + 1}" for number in range(WARPS)])
         if component.floats:
             add(component.name, [f"{component.name}.{name}" for name in COMPONENTS])
         inner = element.size - element.boundary_coordinates
-        add(_inside(component), [f"{component.name}~{number + 1}" for number in range(inner)])
+        add(f"{component.name}~", [f"{component.name}~{number + 1}" for number in range(inner)])
     for name, link in assembly.superelements.items():
         add(name, list(inner_coordinates(link)))
     return blocks, tuple(names)
 
 
-def _yielding_coordinates(item: Interface, element: Superelement) -> bool:
-    return item.yields and element.warps > 0
-
-
 def _warps(joint: Joint) -> str:
     return f"{joint.name} warps"
-
-
-def _inside(component: Component) -> str:
-    return f"{component.name}~"
 
 
 def _operator(assembly: Assembly, component: Component, element: Superelement, blocks: Mapping[str, slice], size: int) -> Array:
@@ -229,11 +221,11 @@ def _operator(assembly: Assembly, component: Component, element: Superelement, b
             result[rows, blocks[joint.body]] = turn @ transport(at - assembly.bodies[joint.body].reference)
     if component.floats:
         result[:6, blocks[component.name]] = spatial_rotation(component.place.rotation.T)
-    yielding = [item.joint for item in component.interfaces if _yielding_coordinates(item, element)]
+    yielding = [item.joint for item in component.interfaces if item.yields and element.warps]
     for number, joint in enumerate(yielding):
         start = 6 * element.interfaces + WARPS * number
         result[start : start + WARPS, blocks[_warps(joint)]] = np.eye(WARPS)
-    result[element.boundary_coordinates :, blocks[_inside(component)]] = np.eye(element.size - element.boundary_coordinates)
+    result[element.boundary_coordinates :, blocks[f"{component.name}~"]] = np.eye(element.size - element.boundary_coordinates)
     return result
 
 

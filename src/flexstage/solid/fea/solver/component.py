@@ -14,7 +14,7 @@ from enum import Enum
 from itertools import chain
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, copies, expand
@@ -186,7 +186,7 @@ def _owners(assembly: Assembly, links: Mapping[str, Piece], cut: Cut) -> dict[st
         for body in assembly.links[name].joins:
             if body in bodies and (cut is Cut.NONE or (_group(body) == _group(name) and not isinstance(piece.form, Piezo))):
                 joined[nodes.index(name), nodes.index(body)] = 1.0
-    labels = connected_components(joined, directed=False)[1].tolist()
+    labels = scipy.sparse.csgraph.connected_components(joined, directed=False)[1].tolist()
     return {node: nodes[labels.index(label)] for node, label in zip(nodes, labels, strict=True)}
 
 
