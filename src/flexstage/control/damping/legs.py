@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 import scipy
@@ -129,9 +130,8 @@ def _unit(link: str) -> str:
 
 def _places(mechanism: Mechanism) -> Mapping[str, str]:
     """Links of individual strain gauges by gauge name."""
-    probes = {key: place for key, place in mechanism.gauges.items() if isinstance(place, LinkProbe)}
-    pairs = (zip(copy_names(key), link_names(place.link), strict=True) for key, place in probes.items())
-    return {name: link for group in pairs for name, link in group}
+    probes = ((key, place.link) for key, place in mechanism.gauges.items() if isinstance(place, LinkProbe))
+    return dict(chain.from_iterable(zip(copy_names(key), link_names(link), strict=True) for key, link in probes))
 
 
 def _findings(assembly: Assembly, model: LinearModel, outputs: set[str], asked: str) -> Iterator[Finding]:

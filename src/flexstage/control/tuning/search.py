@@ -357,12 +357,12 @@ class SearchResult:
     @property
     def laws(self) -> tuple[PI | PID, ...]:
         """Laws by loop."""
-        return tuple(shape.law(point) for shape, point in zip(self.shapes, self.points, strict=True))
+        return tuple(map(Shape.law, self.shapes, self.points))
 
     @property
     def notches(self) -> tuple[tuple[Notch, ...], ...]:
         """Notches by loop. Notches of depth 1 are omitted, because they have no effect."""
-        every = (shape.notches(point) for shape, point in zip(self.shapes, self.points, strict=True))
+        every = map(Shape.notches, self.shapes, self.points)
         return tuple(tuple(each for each in notches if each.depth < 1.0) for notches in every)
 
 
