@@ -21,6 +21,7 @@ from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.meshing.straighten import jacobians, straighten
 from flexstage.solid.fea.solver.component import Component, components
 from flexstage.solid.fea.solver.field import field, rigid, stiffness
+from flexstage.solid.fea.solver.skin import surface_owners
 from flexstage.spatial.frame import identity
 from tests.models.solids import solver
 
@@ -59,6 +60,13 @@ def lever() -> tuple[Component, PieceMesh]:
     """The heaviest component of the shipped stage: 19 pieces, a notch 50 times as wide as it is thick."""
     component = next(part for part in components(STAGE) if part.name == "B4/tip")
     return component, mesh_component(component, Fineness())
+
+
+def test_the_element_behind_a_triangle_has_its_corners(lever: tuple[Component, PieceMesh]) -> None:
+    mesh = lever[1].mesh
+    corners = [{vertex.nr for vertex in element.vertices} for element in mesh.Elements(ngsolve.VOL)]
+    behind = surface_owners(mesh, np.arange(mesh.ne))
+    assert all({vertex.nr for vertex in face.vertices} <= corners[at] for face, at in zip(mesh.Elements(ngsolve.BND), behind, strict=True))
 
 
 def test_no_element_is_folded_and_the_volume_is_that_drawn(lever: tuple[Component, PieceMesh]) -> None:

@@ -131,5 +131,5 @@ def _mean_by_vertex(triangles: Array, weights: Array) -> Any:
 
 def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
     """Return the piece of the element behind each triangle."""
-    behind = [mesh[face.facets[0]].elements[0].nr for face in mesh.Elements(ngsolve.BND)]
+    behind = [mesh[face.faces[0]].elements[0].nr for face in mesh.Elements(ngsolve.BND)]
     return owner[np.array(behind, dtype=int)]
