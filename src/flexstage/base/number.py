@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -95,6 +95,34 @@ def stack(values: Any) -> Array:
 
 def _depth(values: Any) -> int:
     return 1 + _depth(values[0]) if isinstance(values, (list, tuple)) else 0
+
+
+def same_batch(*matrices: Array) -> list[Array]:
+    """Broadcast the batch axes of matrices (..., r, c) of any size.
+
+    >>> [each.shape for each in same_batch(np.eye(2), np.zeros((4, 1, 3)))]
+    [(4, 2, 2), (4, 1, 3)]
+    """
+    batch = np.broadcast_shapes(*(each.shape[:-2] for each in matrices))
+    return [np.broadcast_to(each, (*batch, *each.shape[-2:])) for each in matrices]
+
+
+def join(matrices: Iterable[Array], axis: int = -2) -> Array:
+    """Join matrices (..., r, c) below each other, or side by side with `axis` -1; the batch axes are broadcast.
+
+    >>> join([np.eye(2), np.zeros((4, 1, 2))]).shape
+    (4, 3, 2)
+    """
+    return np.concatenate(same_batch(*matrices), axis=axis)
+
+
+def matvec(matrix: Array, vector: Array) -> Array:
+    """Multiply matrices (..., r, c) by vectors (..., c).
+
+    >>> matvec(np.ones((3, 1, 2)), np.array([1.0, 2.0])).tolist()
+    [[3.0], [3.0], [3.0]]
+    """
+    return (matrix @ vector[..., None])[..., 0]
 
 
 def magnitude(value: Any) -> Any:

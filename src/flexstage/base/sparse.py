@@ -36,9 +36,10 @@ class _Operator:
             return self._rows(index[1])
         return np.asarray(self)[index]
 
-    def swapaxes(self, first: int, second: int) -> Array:
-        """Return the dense transpose."""
-        return np.swapaxes(np.asarray(self), first, second)
+    @property
+    def mT(self) -> Array:
+        """The dense transpose."""
+        return np.asarray(self).mT
 
     def _dense(self) -> Array:
         raise NotImplementedError

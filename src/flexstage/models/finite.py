@@ -283,7 +283,7 @@ def _relative(links: _Links, state: _State) -> _Relative:
     carried = ((second - np.eye(3)) @ links.second_arm[..., None] - (first - np.eye(3)) @ links.first_arm[..., None])[..., 0]
     offset = state.shift[..., links.second, :] - state.shift[..., links.first, :] + carried
     axes = first @ links.axes
-    back = np.swapaxes(axes, -1, -2)
+    back = axes.mT
     rotation = back @ (second @ links.axes)
     return _Relative(offset, axes, (back @ offset[..., None])[..., 0], rotation, logarithm(rotation))
 
@@ -353,7 +353,7 @@ def _slopes(links: _Links, state: _State, relative: _Relative) -> Array:
 
 def _end_slopes(links: _Links, state: _State, relative: _Relative) -> tuple[Array, Array]:
     """Derivatives (..., L, 6, 6) of the relative poses by the twist of the first and of the second body."""
-    back = np.swapaxes(relative.axes, -1, -2)
+    back = relative.axes.mT
     arms = [
         cross_matrix((state.turn[..., ends, :, :] @ arm[..., None])[..., 0])
         for ends, arm in ((links.first, links.first_arm), (links.second, links.second_arm))

@@ -20,7 +20,7 @@ import scipy
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.number import Array, Number, first_design
+from flexstage.base.number import Array, Number, first_design, join
 from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.base.storage.digest import digest
@@ -291,8 +291,7 @@ def _graph(mechanism: Mechanism) -> _Graph:
     operators = [deformation(assembly, order, link) for link in assembly.links.values()]
     if not operators:
         raise refuse("links", "none specified", "Join bodies by links, for example the platform and the ground")
-    batch = np.broadcast_shapes(*{operator.shape[:-2] for operator in operators})
-    strain = np.concatenate([np.broadcast_to(operator, (*batch, *operator.shape[-2:])) for operator in operators], axis=-2)
+    strain = join(operators)
     length = _length(assembly)
     constraints, names = _constraints(assembly, strain)
     return _Graph(assembly, order, strain, constraints, names, _scale(assembly, length), length, whole.superelements)
@@ -313,8 +312,7 @@ def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, .
         locked |= {f"{name}.{freedom.value}": 6 * place + index for index, freedom in enumerate(ALL) if freedom not in free}
     places = list(locked.values())
     rows, strokes = strain[..., places, :], -free_deformations(assembly)[..., places, :]
-    batch = np.broadcast_shapes(rows.shape[:-2], strokes.shape[:-2])
-    return np.concatenate([np.broadcast_to(part, (*batch, *part.shape[-2:])) for part in (rows, strokes)], axis=-1), tuple(locked)
+    return join([rows, strokes], axis=-1), tuple(locked)
 
 
 def _by_link(strains: Array) -> Array:
@@ -359,7 +357,7 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], idle
     size = graph.order.size
     weighted = np.tile(_weights(graph.length), len(graph.assembly.links))[..., None] * graph.strain
     before, spun = (weighted @ motion[..., :size, :] for motion in (driven, idle))
-    transposed = np.swapaxes(spun, -1, -2)
+    transposed = spun.mT
     return driven - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
 
 
@@ -379,7 +377,7 @@ def _sense(graph: _Graph, solution: Elimination, columns: list[int], idle_column
     energy, mixed = np.zeros((len(idle_columns), len(idle_columns))), np.zeros((len(idle_columns), len(columns)))
     for place, stiffness in _stiffnesses(graph, still, [name for name, _ in watching]):
         strain = graph.strain[..., place, :]
-        force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
+        force = (stiffness @ (strain @ idle)).mT
         energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ driven)
     stored, loose = _split_batch(np.real(energy))
     unresisted = [name for name, row in watching if np.any(_sees(row, still @ loose))]
@@ -476,7 +474,7 @@ def _thrust(graph: _Graph, bodies: Array) -> Array:
     """Generalised force (..., f, t) on every platform coordinate per unit input of each force actuator, by virtual work."""
     rows = [row @ bodies for row in _elongations(graph).values()]
     none = np.zeros((*bodies.shape[:-2], 0, bodies.shape[-1]))
-    return np.swapaxes(np.concatenate(np.broadcast_arrays(*rows), axis=-2) if rows else none, -1, -2)
+    return (join(rows) if rows else none).mT
 
 
 def _sensing(graph: _Graph, bodies: Array) -> Array:
@@ -485,14 +483,14 @@ def _sensing(graph: _Graph, bodies: Array) -> Array:
     rows = [_gauge_row(graph, name, bodies, motion) for name in graph.assembly.gauges]
     if not rows:
         return np.zeros((0, 6))
-    return np.concatenate(np.broadcast_arrays(*rows), axis=-2)
+    return join(rows)
 
 
 def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
     gauge, row = graph.assembly.gauges[name], _reading(graph, name)
     if all({sight.body, sight.base} <= {PLATFORM, "ground"} for sight in gauge.sights):
         return row[..., :6]
-    weighted = np.swapaxes(motion, -1, -2) * _weights(graph.length)[..., None, :] ** 2
+    weighted = motion.mT * _weights(graph.length)[..., None, :] ** 2
     return row @ bodies @ np.linalg.solve(weighted @ motion, weighted)
 
 

@@ -9,19 +9,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TypeVar, cast
+from typing import cast
 
 import numpy as np
 import scipy
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.number import Array, Number, first_design
+from flexstage.base.number import Array, Number, first_design, join, same_batch
 from flexstage.base.sparse import Rows, Sparse, below
 from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import Law, law, law_of, viscous_damping
 from flexstage.beams.mass import mass
-from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, by_part, expand
 from flexstage.mechanism.assembly.incidence import LARGE, Layout, end_twists, is_single, layout, require_room, twist_at, with_ground
 from flexstage.mechanism.assembly.moving_mass import moving_inertia
 from flexstage.mechanism.drawn import as_drawn
@@ -63,8 +63,6 @@ _MATRICES = 20.0
 _STRETCHES = 1e-5
 _OVER: Array = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 """Rotations are compared with translations over 0.1 m."""
-
-_Value = TypeVar("_Value")
 
 
 class Masses(Enum):
@@ -207,7 +205,7 @@ class _Idle:
     def momentless(self, momentum: Array) -> Array:
         """Correction of a motion (..., N, m) of `momentum` M z (..., N, m) that leaves no momentum in the free internal modes."""
         heavy = self.motions[..., list(self.heavy)]
-        return -(heavy @ np.linalg.solve(*_broadcast((self.mass, _transpose(heavy) @ momentum))))
+        return -(heavy @ np.linalg.solve(*same_batch(self.mass, heavy.mT @ momentum)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,13 +241,13 @@ def _stage(mechanism: Mechanism, *, sparse: bool = False) -> _Stage:
     if not sparse:
         require_room(assembly, _MATRICES)
     with np.errstate(all="ignore"):  # overflow is refused below
-        laws = _by_part(law, assembly)
+        known = by_part(assembly.links, _law_and_whole)
+    laws, whole = {name: own for name, (own, _) in known.items()}, {name: each for name, (_, each) in known.items()}
     inner = {name: item.inner.shape[-1] for name, item in laws.items() if item.inner is not None}
     inner |= {name: len(_condensed(element).squares) for name, element in assembly.superelements.items()}
     order = layout(assembly, inner, sparse=sparse)
     ends: dict[str, tuple[Array, ...]] = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
     strains: dict[str, Contribution] = {}
-    whole = _by_value(_whole_law, laws)
     for name, link in assembly.links.items():
         operator = _with_inner(order, name, (ends[name][1] - ends[name][0],))
         strains[name] = Contribution(operator, whole[name], _loss_factor(as_drawn(mechanism, link)))
@@ -279,12 +277,13 @@ def _with_inner(order: Layout, link: str, rows: tuple[Array, ...]) -> Array:
     """Rows (..., r, N) of a link stacked above those of its inner coordinates."""
     if order.sparse:
         return cast("Array", below(cast("tuple[Sparse, ...]", (*rows, order.inner_selector(link))), order.size))
-    return np.concatenate(_broadcast((*rows, order.inner_selector(link))), axis=-2)
+    return join([*rows, order.inner_selector(link)])
 
 
-def _whole_law(law: Law) -> Array:
-    """Stiffness (..., 6 + m, 6 + m) of the relative twist of a link and its inner coordinates, which are decoupled."""
-    return law.stiffness if law.inner is None else _block_diagonal(law.stiffness, law.inner[..., None] * np.eye(law.inner.shape[-1]))
+def _law_and_whole(part: Part, material: Material | None) -> tuple[Law, Array]:
+    """The law of a link, and the stiffness (..., 6 + m, 6 + m) of its relative twist and its inner coordinates, which are decoupled."""
+    own = law(part, material)
+    return own, own.stiffness if own.inner is None else _block_diagonal(own.stiffness, own.inner[..., None] * np.eye(own.inner.shape[-1]))
 
 
 def _block_diagonal(first: Array, second: Array) -> Array:
@@ -297,7 +296,7 @@ def _block_diagonal(first: Array, second: Array) -> Array:
 
 def _viscous(assembly: Assembly) -> dict[str, Array]:
     """Dampers of parts, by link."""
-    dampers = _by_part(lambda part, _: viscous_damping(part), assembly)
+    dampers = by_part(assembly.links, lambda part, _: viscous_damping(part))
     elements = {name: _condensed(element).damping for name, element in assembly.superelements.items()}
     return {name: damping for name, damping in (*dampers.items(), *elements.items()) if damping is not None}
 
@@ -344,21 +343,6 @@ def _require_distinguishable(stage: _Stage, loose: Array, basis: Array | None) -
         )
 
 
-def _by_part(function: Callable[[Part, Material | None], _Value], assembly: Assembly) -> dict[str, _Value]:
-    """A value for every link, computed once per part and material."""
-    keys = {name: (id(link.part), id(link.material)) for name, link in assembly.links.items()}
-    distinct = {keys[name]: link for name, link in assembly.links.items()}
-    values = {key: function(link.part, link.material) for key, link in distinct.items()}
-    return {name: values[key] for name, key in keys.items()}
-
-
-def _by_value(function: Callable[[Law], _Value], laws: Mapping[str, Law]) -> dict[str, _Value]:
-    """A value for every link, computed once per law."""
-    distinct = {id(item): item for item in laws.values()}
-    values = {key: function(item) for key, item in distinct.items()}
-    return {name: values[id(item)] for name, item in laws.items()}
-
-
 def _loss_factor(link: PlacedLink) -> Number:
     inner = link.part.part if isinstance(link.part, Restricted) else link.part
     holder = link.material if link.material is not None else inner
@@ -374,7 +358,7 @@ def _retain_motions(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Reta
     driven: Array | None = None
     independent = tuple(range(stage.order.size))
     if stage.locked:
-        rows = np.concatenate(_broadcast(tuple(stage.locked.values())), axis=-2)
+        rows = join(stage.locked.values())
         solution = eliminate(rows, scale, keep=tuple(range(6)))
         basis, independent = solution.basis, solution.independent
         driven = _stroke_motion(stage, solution, rows)
@@ -403,10 +387,10 @@ def _driven_motions(stage: _Stage, inertia: Mapping[str, Contribution], basis: A
     wrenches = exerted_wrenches(stage.assembly)
     if not wrenches:
         return None
-    mass = _transpose(full) @ _momentum(inertia, full)
+    mass = full.mT @ _momentum(inertia, full)
     laws = max(item.law.ndim for item in stage.strains.values())
-    thrusts = sum((_transpose(stage.strains[name].operator[..., :6, :]) @ wrench for name, wrench in wrenches.items()), np.zeros((1, 1)))
-    work = np.real(first_design(_transpose(full) @ thrusts, 2))
+    thrusts = sum((stage.strains[name].operator[..., :6, :].mT @ wrench for name, wrench in wrenches.items()), np.zeros((1, 1)))
+    work = np.real(first_design(full.mT @ thrusts, 2))
     sizes = np.linalg.norm(work, axis=0)
     moved = work[:, sizes > _APART * np.max(sizes)] / sizes[sizes > _APART * np.max(sizes)]
     if np.linalg.matrix_rank(moved, tol=_APART) < loose.shape[1] or np.linalg.cond(np.real(first_design(mass, 2))) > 1.0 / _MASSLESS:
@@ -446,14 +430,14 @@ def _idle(
     """Free internal modes, each with a unit in one of the `named` coordinates; the `left` ones follow: K_ll n_l = -K_ln."""
     stiffness = assemble({name: _through(item, basis) for name, item in stage.strains.items()}, basis.shape[-1])
     inner = stiffness[..., left, :][..., left]
-    root = np.sqrt(np.abs(np.diagonal(np.real(inner), axis1=-2, axis2=-1)))
+    root = np.sqrt(np.abs(np.linalg.diagonal(np.real(inner))))
     root = np.where(root > 0.0, root, 1.0)
     solved = np.linalg.solve(inner / root[..., None] / root[..., None, :], stiffness[..., left, :][..., named] / root[..., None])
     small = np.zeros((*stiffness.shape[:-2], basis.shape[-1], len(named)), dtype=stiffness.dtype)
     small[..., left, :] = -solved / root[..., None]
     small[..., named, :] = np.eye(len(named))
     motions = basis @ small
-    mass = _transpose(motions) @ _momentum(inertia, motions)
+    mass = motions.mT @ _momentum(inertia, motions)
     heavy = _inertial_modes_of_batch(np.real(mass), _largest(inertia, np.real(motions), stage.order.coordinates))
     return _Idle(motions, names, heavy, mass[..., heavy, :][..., heavy])
 
@@ -505,11 +489,6 @@ def _unsprung(stage: _Stage, output: Array) -> Array:
     return np.concatenate([output[..., : output.shape[-2] - forces, :], np.zeros((*output.shape[:-2], forces, output.shape[-1]))], axis=-2)
 
 
-def _broadcast(arrays: tuple[Array, ...]) -> list[Array]:
-    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
-    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays] if batch else list(arrays)
-
-
 def _loose(stage: _Stage, basis: Array | None) -> Array:
     """Null space (n, k) of the first design's stiffness in the independent coordinates."""
     strains = _strains(stage, basis, lambda values: np.real(first_design(values, 2)))
@@ -546,7 +525,7 @@ def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[i
     """Refuse batch designs whose motions without stiffness differ from the first, or hardly depend on the `named` coordinates."""
     if stage.order.sparse or all(item.operator.ndim == item.law.ndim == 2 for item in stage.strains.values()):
         return
-    laws = (np.diagonal(np.real(item.law), axis1=-2, axis2=-1) for item in stage.strains.values())
+    laws = (np.linalg.diagonal(np.real(item.law)) for item in stage.strains.values())
     if all(np.all(law > 0.0) for law in laws):
         return
     stiffness = assemble(_strains(stage, basis, np.real), stage.order.size if basis is None else basis.shape[-1])
@@ -659,7 +638,7 @@ def _through(item: Contribution, basis: Array | None) -> Contribution:
 
 
 def _project(force: Array, basis: Array | None) -> Array:
-    return force if basis is None else _transpose(basis) @ force
+    return force if basis is None else basis.mT @ force
 
 
 def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, Contribution]:
@@ -671,7 +650,7 @@ def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, C
         if matrix is not None:
             result[name] = Contribution(stage.order.selector(name), matrix)
     if masses is Masses.ALL:
-        own = _by_part(mass, stage.assembly)
+        own = by_part(stage.assembly.links, mass)
         require(_non_finite(stage.assembly, own, "inertia"))
         for name, matrix in own.items():
             result[_of_link(name)] = Contribution(_with_inner(stage.order, name, stage.ends[name]), matrix)
@@ -694,13 +673,13 @@ def _carrier_forces(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array
         carried[_of_link(name)] = np.concatenate([carry, carry, still], axis=-2)
     for name, element in stage.assembly.superelements.items():
         carries = [twist_transform(port.frame, centre) for port in element.ports.values()]
-        carried[_of_link(name)] = np.concatenate(_broadcast((*carries, np.zeros((stage.order.inner[name], 6)))), axis=-2)
+        carried[_of_link(name)] = join([*carries, np.zeros((stage.order.inner[name], 6))])
     return strain_forces(inertia, carried) if inertia else np.zeros((stage.order.size, 6))
 
 
 def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idle, carried: Array) -> Array:
     """Inertial forces on the free internal modes per ground acceleration (..., k, 6), without rounding."""
-    exerted = _transpose(idle.motions) @ carried
+    exerted = idle.motions.mT @ carried
     names = stage.order.coordinates
     spin, rigid = (_largest(inertia, np.real(motions), names) for motions in (idle.motions, stage.rigid))
     most = spin[..., :, None] * rigid[..., None, :]
@@ -709,11 +688,10 @@ def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idl
 
 def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array]]:
     """Direct forces, and imposed deformations of links: strokes of sprung actuators, less the part of motions imposed elsewhere."""
-    wrenches = [_transpose(rows) for rows in place_twists(wrench_places(stage.assembly), stage.motions)]
-    columns = _broadcast((np.zeros((stage.order.size, len(stage.assembly.actuators))), *wrenches))
-    force = np.concatenate(columns, axis=-1)
+    wrenches = [rows.mT for rows in place_twists(wrench_places(stage.assembly), stage.motions)]
+    force = join([np.zeros((stage.order.size, len(stage.assembly.actuators))), *wrenches], axis=-1)
     for name, wrench in exerted_wrenches(stage.assembly).items():
-        force = force + _transpose(stage.strains[name].operator[..., :6, :]) @ wrench
+        force = force + stage.strains[name].operator[..., :6, :].mT @ wrench
     imposed = _strokes(stage)
     if driven is not None:
         imposed = {name: imposed.get(name, 0.0) - item.operator @ driven for name, item in stage.strains.items()}
@@ -741,18 +719,18 @@ def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]
         rows.append(law @ item.operator)
         own = -law @ imposed[name] if name in imposed else np.zeros((law.shape[-2], inputs))
         passed.append(own - exerted[name] if name in exerted else own)
-    through = np.concatenate(_broadcast(tuple(passed)), axis=-2)
+    through = join(passed)
     if stage.order.sparse:
         return cast("Array", Rows.of(cast("list[Sparse]", rows), stage.order.size)), through
-    return np.concatenate(_broadcast(tuple(rows)), axis=-2), through
+    return join(rows), through
 
 
 def _port_wrenches(element: PlacedSuperelement) -> Array:
     """Matrix (..., 6 p, 6 (p - 1)) to the wrenches at all ports from those at all but the first, which balances them."""
     first, *others = (port.frame for port in element.ports.values())
     carries = [twist_transform(frame, first.position) @ spatial_rotation(first.rotation) for frame in others]
-    balance = -_transpose(np.concatenate(_broadcast(tuple(carries)), axis=-2))
-    return np.concatenate(_broadcast((balance, np.eye(balance.shape[-1]))), axis=-2)
+    balance = -join(carries).mT
+    return join([balance, np.eye(balance.shape[-1])])
 
 
 def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
@@ -764,7 +742,3 @@ def _rigid_output(stage: _Stage, output: Array, carried: Array, idle: _Idle | No
     """Outputs that move with the ground (..., p, 6); free internal modes stay behind, as only inertia moves them."""
     carried_along = np.where(absolute(stage.assembly)[:, None], output @ stage.rigid, 0.0)
     return carried_along if idle is None else carried_along + output @ idle.momentless(carried)
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

@@ -15,7 +15,7 @@ import scipy
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, join, matvec, same_batch
 from flexstage.base.record import Heading, Layout
 from flexstage.base.storage.digest import digest
 from flexstage.base.units.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
@@ -107,14 +107,14 @@ def _model(
     mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, Number], mass: Array, places: Mapping[str, tuple[Array, Array]]
 ) -> LinearModel:
     count, freedoms = len(kinematics.actuators), kinematics.mobility
-    outputs = np.concatenate(_broadcast(*(motion for motion, _ in places.values())), axis=-2)
+    outputs = join(motion for motion, _ in places.values())
     loads, carried = 6 * len(places), [rigid for _, rigid in places.values()]
     sensing = kinematics.sensing @ kinematics.motion
     channels = [Channel(f"{place}.{name}", unit) for place in places for name, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
     channels += [Channel(name, unit) for name, unit in zip(kinematics.gauges, kinematics.reading_units, strict=True)]
     inputs = [Channel(name, "m") for name in kinematics.actuators]
     inputs += [Channel(f"{place}.{name}", unit) for place in places for name, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
-    transposed = np.swapaxes(kinematics.motion, -1, -2)
+    transposed = kinematics.motion.mT
     return LinearModel(
         coordinates=tuple(f"{PLATFORM}.{name}" for name in kinematics.coordinates),
         stiffness={
@@ -123,23 +123,18 @@ def _model(
         },
         inertia={PLATFORM: Contribution(kinematics.motion, mass)},
         inputs=tuple(inputs),
-        force=np.concatenate([np.zeros((*outputs.shape[:-2], freedoms, count)), np.swapaxes(outputs, -1, -2)], axis=-1),
+        force=np.concatenate([np.zeros((*outputs.shape[:-2], freedoms, count)), outputs.mT], axis=-1),
         imposed={name: np.eye(count + loads)[index : index + 1] for index, name in enumerate(kinematics.actuators)},
         outputs=tuple(channels),
-        output=np.concatenate(_broadcast(outputs, sensing), axis=-2),
+        output=join([outputs, sensing]),
         feedthrough=np.zeros((len(channels), count + loads)),
         rigid=kinematics.projection,
-        rigid_output=np.concatenate(_broadcast(*carried, np.zeros((len(kinematics.gauges), 6))), axis=-2),
+        rigid_output=join([*carried, np.zeros((len(kinematics.gauges), 6))]),
         base_inertia=transposed @ mass,
         damping=mechanism.damping,
         idle=(),
         provenance=f"mapped model of {digest(mechanism, physics=True)[:16]}",
     )
-
-
-def _broadcast(*arrays: Array) -> list[Array]:
-    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
-    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
 
 
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
@@ -192,17 +187,17 @@ def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) 
     locked = {name: [axis for axis, each in enumerate(ALL) if each not in free] for name, free in kinematics.free.items()}
     strains = [deformation(assembly, order, assembly.links[name])[..., axes, :] for name, axes in locked.items()]
     row = kinematics.actuation[..., kinematics.actuators.index(actuator), :, None]
-    wrenches = _broadcast(np.swapaxes(kinematics.projection, -1, -2) @ row, _idle_wrenches(kinematics))
+    wrenches = same_batch(kinematics.projection.mT @ row, _idle_wrenches(kinematics))
     loads = order.selector(PLATFORM).T @ np.concatenate(wrenches, axis=-1)
     rigid = np.array([isinstance(assembly.links[name].part, Joint) for name, axes in locked.items() for _ in axes])
-    rows, loads = _broadcast(np.concatenate(_broadcast(*strains), axis=-2), loads)
+    rows, loads = same_batch(join(strains), loads)
     forces = _equilibrium(rows, loads, rigid, kinematics.length)
     return None if forces is None else _work(assembly, locked, forces)
 
 
 def _idle_wrenches(kinematics: Kinematics) -> Array:
     """Wrenches (..., 6, 6 - f) without work in any ideal motion."""
-    complement = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
+    complement = np.eye(6) - kinematics.projection.mT @ kinematics.motion.mT
     count = 6 - kinematics.mobility
     chosen = np.array([scipy.linalg.qr(each, pivoting=True)[2][:count] for each in np.real(complement).reshape(-1, 6, 6)], dtype=int)
     return np.take_along_axis(complement, chosen.reshape(*complement.shape[:-2], 1, count), axis=-1)
@@ -239,7 +234,7 @@ def _equilibrium(rows: Array, loads: Array, rigid: Array, length: Number) -> Arr
     `None` if the first load of a design cannot be balanced this way. Every design of a batch has its own choice.
     """
     batch, (count, size) = rows.shape[:-2], rows.shape[-2:]
-    full = np.concatenate([np.swapaxes(rows, -1, -2), loads[..., 1:], loads[..., :1]], axis=-1).reshape(-1, size, count + loads.shape[-1])
+    full = np.concatenate([rows.mT, loads[..., 1:], loads[..., :1]], axis=-1).reshape(-1, size, count + loads.shape[-1])
     turns = np.broadcast_to(1.0 / np.real(length), batch).ravel()
     scaled = np.real(full) * np.where(np.arange(size) % 6 < 3, 1.0, turns[:, None])[..., None]
     forces, bearing = np.zeros((len(full), full.shape[-1]), dtype=full.dtype), None
@@ -366,7 +361,7 @@ def _series(chain: list[PlacedLink], line: PlacedLink) -> Array:
         offset = np.max(np.abs(np.real(_perpendicular(link.frame.position - line.frame.position, axis))))
         if offset > _COLLINEAR:
             raise refuse(link.name, f"offset from the line of {line.name} (got {offset * 1e3:.4g} mm, expected 0)", "")
-        local = (np.swapaxes(link.frame.rotation, -1, -2) @ axis[..., None])[..., 0]
+        local = matvec(link.frame.rotation.mT, axis)
         matrix = _compliance(link)[..., :3, :3]
         total = total + (local[..., None, :] @ matrix @ local[..., :, None])[..., 0, 0]
     return total

@@ -19,7 +19,7 @@ from flexstage.analysis.workspace.map_error import map_error_at
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number, matvec, stack
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.finite import design_shape
@@ -88,18 +88,18 @@ def budget(
     columns = command_columns(kinematics, command)
     steps: dict[str, Array] = {}
     if forced:
-        plain = corrected = {PARASITIC: _times(np.abs(carry @ _forced_errors(kinematics, model, columns)), half)}
+        plain = corrected = {PARASITIC: matvec(np.abs(carry @ _forced_errors(kinematics, model, columns)), half)}
         provenance = model.provenance
     else:
         corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
         lost, finite = lost_motion(kinematics, model), map_error_at(mechanism, kinematics, corners)
-        loss, cross, left = (_times(np.abs(carry @ each), half) for each in _command_errors(kinematics, lost, columns))
-        mapped = np.max(np.abs((carry @ finite.errors[..., None])[..., 0]), axis=0)
+        loss, cross, left = (matvec(np.abs(carry @ each), half) for each in _command_errors(kinematics, lost, columns))
+        mapped = np.max(np.abs(matvec(carry, finite.errors)), axis=0)
         plain, corrected = (
             {"lost motion": own, "crosstalk": rest, "linear map": mapped} for own, rest in ((loss, cross), (np.zeros(6), left))
         )
         least = _steps(assembly, kinematics.actuators)
-        steps = {} if least is None else {STEPS: _times(np.abs(carry @ lost.gain.values), 0.5 * least)}
+        steps = {} if least is None else {STEPS: matvec(np.abs(carry @ lost.gain.values), 0.5 * least)}
         provenance = f"{lost.provenance}; {finite.provenance}"
     attempts = Attempts()
     resolution = (
@@ -108,8 +108,8 @@ def budget(
     unknown = np.full(6, np.nan)
     seen = unknown if resolution is None else carry @ resolution.inverse.values
     common = {
-        "gauge noise": unknown if resolution is None else coverage * np.sqrt(_times(seen**2, resolution.gauge_noise**2)),
-        "quantisation": unknown if resolution is None else _times(np.abs(seen), 0.5 * resolution.gauge_steps),
+        "gauge noise": unknown if resolution is None else coverage * np.sqrt(matvec(seen**2, resolution.gauge_noise**2)),
+        "quantisation": unknown if resolution is None else matvec(np.abs(seen), 0.5 * resolution.gauge_steps),
         "drift": unknown if warmed is None else np.abs(warmed.of(at).values[..., :, 0]) * np.abs(temperature),
         **steps,
         **({} if noise is None and not forced else _noises(model, at, noise or {}, band, coverage)),
@@ -157,10 +157,6 @@ def _command_errors(kinematics: Kinematics, lost: LostMotion, columns: list[int]
     total = kinematics.motion[..., columns] - lost.gain.values @ strokes
     left = kinematics.motion[..., columns] - lost.gain.values @ lost.correction.values[..., columns]
     return loss, total - loss, left
-
-
-def _times(matrix: Array, vector: Array) -> Array:
-    return (matrix @ vector[..., None])[..., 0]
 
 
 def _steps(assembly: Assembly, actuators: tuple[str, ...]) -> Array | None:

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number, matvec, stack
 from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.mechanism.assembly.expansion import Ground
@@ -94,4 +94,4 @@ def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, de
     signs = 2.0 * ((np.arange(2 ** len(columns))[:, None] >> np.arange(len(columns))) & 1) - 1.0
     mapping = kinematics.mapping.values[..., columns]
     lead = (len(signs), *(1,) * max(depth, mapping.ndim - 2, half.ndim - 1), len(columns))
-    return (mapping @ (signs.reshape(lead) * half)[..., None])[..., 0]
+    return matvec(mapping, signs.reshape(lead) * half)

@@ -219,7 +219,7 @@ def _piece(batch: Mechanism, count: int, solved: Eigen, groups: list[list[int]],
     if not gains:
         return slopes, np.zeros((count, 0))
     loss = lost_motion(ideal(batch), model).loss.values
-    diagonal = slope(np.diagonal(loss, axis1=-2, axis2=-1))
+    diagonal = slope(np.linalg.diagonal(loss))
     return slopes, np.broadcast_to(diagonal, (count, diagonal.shape[-1]))
 
 
@@ -243,7 +243,7 @@ def project(contributions: Contributions, shapes: Array) -> Array:
     total = np.zeros((shapes.shape[1], shapes.shape[1]))
     for item in contributions.values():
         seen = item.operator @ shapes
-        total = total + slope(np.swapaxes(seen, -1, -2) @ item.law @ seen)
+        total = total + slope(seen.mT @ item.law @ seen)
     return total
 
 

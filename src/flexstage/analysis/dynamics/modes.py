@@ -271,8 +271,8 @@ def _align(platform: Array, solved: Eigen, groups: list[list[int]], weights: Arr
         if len(leading) < len(group):
             rest = np.linalg.qr(first_design(rows, 2).T, mode="complete")[0][:, len(leading) :] if len(leading) else np.eye(len(group))
             rows = np.concatenate([rows, every[..., _leading(first_design(every, 2), 0.0, rest), :]], axis=-2)
-        turn, upper = np.linalg.qr(np.swapaxes(rows, -1, -2))
-        shapes[..., group] = shapes[..., group] @ turn * np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)[..., None, :]
+        turn, upper = np.linalg.qr(rows.mT)
+        shapes[..., group] = shapes[..., group] @ turn * np.where(np.linalg.diagonal(upper) < 0.0, -1.0, 1.0)[..., None, :]
     return Eigen(solved.values, shapes), moving
 
 
@@ -387,7 +387,7 @@ def modal_assurance(first: Array, second: Array, weight: Array | None = None) ->
     [0.5, 0.5]
     """
     metric = np.eye(first.shape[-2]) if weight is None else weight
-    cross = np.abs(np.conj(np.swapaxes(first, -1, -2)) @ metric @ second) ** 2
+    cross = np.abs(np.conj(first.mT) @ metric @ second) ** 2
     own = [np.real(np.sum(np.conj(shape) * (metric @ shape), axis=-2)) for shape in (first, second)]
     values = cross / (own[0][..., :, None] * own[1][..., None, :])
     rows, columns = (tuple(str(index + 1) for index in range(shape.shape[-1])) for shape in (first, second))

@@ -19,7 +19,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, Vector, stack
+from flexstage.base.number import Array, Vector, join, matvec, stack
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import LENGTH
 from flexstage.beams.compliance import law
@@ -82,7 +82,7 @@ class _Thermal:
     def misfit(self, link: PlacedLink) -> Array:
         """Deformation (..., 6, 4) of a link, in its frame, for bodies at rest."""
         first, second = (self.growth(body, link.frame.position) + self._half(link, end) for end, body in enumerate(link.joins))
-        return np.swapaxes(spatial_rotation(link.frame.rotation), -1, -2) @ (second - first)
+        return spatial_rotation(link.frame.rotation).mT @ (second - first)
 
     def _half(self, link: PlacedLink, end: int) -> Array:
         """Expansion of the half of a part next to a body, minus that of the body, at the part's centre."""
@@ -157,7 +157,7 @@ def _unlinked(model: LinearModel, strains: Mapping[str, Array]) -> list[str]:
 def _stacked(fitted: _Fitted, part: Contribution) -> Array:
     """Motions (n, 4) of all bodies that follow the expansion and rotate the load."""
     twists = list(fitted.twists.values())
-    return np.concatenate(_broadcast(twists), axis=-2) if twists else np.zeros((part.law.shape[-1], 4))
+    return join(twists) if twists else np.zeros((part.law.shape[-1], 4))
 
 
 def _without_modes(strain: Array, inner: int) -> Array:
@@ -173,7 +173,7 @@ def _growth(arm: Array, origin: Array) -> Array:
     for axis in range(3):
         slope = np.eye(3)[axis]
         shift = (origin[..., axis, None] + arm[..., axis, None]) * arm - 0.5 * square[..., None] * slope
-        columns.append(np.concatenate([shift, (_ABOUT[axis] @ arm[..., None])[..., 0]], axis=-1))
+        columns.append(np.concatenate([shift, matvec(_ABOUT[axis], arm)], axis=-1))
     return np.stack(columns, axis=-1)
 
 
@@ -195,8 +195,7 @@ def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
     order = layout(assembly)
     operators = {name: deformation(assembly, order, link) for name, link in assembly.links.items()}
     picked = {name: [freedom.index for freedom in locked] for name, locked in bound.items() if locked}
-    rows = np.concatenate(_broadcast([operators[name][..., index, :] for name, index in picked.items()]), axis=-2)
-    gaps = np.concatenate(_broadcast([misfits[name][..., index, :] for name, index in picked.items()]), axis=-2)
+    rows, gaps = (join(known[name][..., index, :] for name, index in picked.items()) for known in (operators, misfits))
     motion = -np.linalg.pinv(rows, rcond=1e-10) @ gaps
     left = np.max(np.abs(rows @ motion + gaps))
     if left > _FITS * np.max(np.abs(gaps)):
@@ -250,10 +249,4 @@ def _material_motion(thermal: _Thermal, twists: Mapping[str, Array], body: str, 
 
 def _label(blocks: Mapping[str, Array], components: tuple[str, ...], units: tuple[str, ...]) -> Matrix:
     rows = tuple(f"{name}.{component}" for name in blocks for component in components)
-    values = np.concatenate(_broadcast(list(blocks.values())), axis=-2)
-    return Matrix(values, rows, FIELDS, ratio_units(units * len(blocks), _FIELD_UNITS))
-
-
-def _broadcast(arrays: list[Array]) -> list[Array]:
-    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
-    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
+    return Matrix(join(blocks.values()), rows, FIELDS, ratio_units(units * len(blocks), _FIELD_UNITS))

@@ -74,7 +74,7 @@ def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWork
     if model.is_sparse or model.designs:
         raise refuse("drive force", "not computed for large stages and batches of designs", "Analyse one design with fewer bodies")
     names, inputs = workspace.coordinates, workspace.per_motion
-    loads = np.swapaxes(model.output[model.output_index(tuple(f"{workspace.point}.{name}" for name in names))], -1, -2)
+    loads = model.output[model.output_index(tuple(f"{workspace.point}.{name}" for name in names))].mT
     driven = model.input_matrix[:, model.input_index(inputs.rows)] @ inputs.values
     basis = _ideal_motions(kinematics, model)
     inner = basis.T @ model.stiffness_matrix @ basis

@@ -70,5 +70,5 @@ def _number(value: Array) -> Number:
 
 def _rows(matrix: Array) -> tuple[tuple[Number, ...], ...]:
     """Rows of numbers of a matrix, symmetrised."""
-    even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    even = 0.5 * (matrix + matrix.mT)
     return tuple(tuple(_number(stack(even[..., row, column])) for column in range(6)) for row in range(6))

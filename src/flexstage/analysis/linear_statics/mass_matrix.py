@@ -70,7 +70,7 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
     reasons = {} if rigid is not None else {"rigid": _MASSLESS}
     try:
         shapes = _static_shapes(model, point)
-        followed = np.swapaxes(shapes, -1, -2)
+        followed = shapes.mT
         reduced = _symmetric(followed @ model.momenta(shapes) if model.is_sparse else followed @ model.inertia_matrix @ shapes)
     except DesignError as error:
         reduced, reasons = None, {**reasons, "reduced": str(error)}
@@ -82,7 +82,7 @@ def _static_shapes(model: LinearModel, point: str) -> Array:
     result = statics(model, load_point=point, read_point=point)
     require(Finding(point, reason, "Use the lumped model") for name, reason in result.reasons.items() if name == "stiffness")
     rows = model.output[..., model.output_index(result.compliance.rows), :]
-    shapes = displacement(model, np.swapaxes(rows, -1, -2)) @ result.stiffness.values
+    shapes = displacement(model, rows.mT) @ result.stiffness.values
     if model.floating is None:
         return shapes
     axes = np.isinf(np.diag(result.compliance.values))  # without stiffness: the floating motions that make up the twist
@@ -91,11 +91,11 @@ def _static_shapes(model: LinearModel, point: str) -> Array:
 
 
 def _congruent(matrix: Array, motions: Array) -> Array:
-    return _symmetric(np.swapaxes(motions, -1, -2) @ matrix @ motions)
+    return _symmetric(motions.mT @ matrix @ motions)
 
 
 def _symmetric(result: Array) -> Array:
-    return 0.5 * (result + np.swapaxes(result, -1, -2))
+    return 0.5 * (result + result.mT)
 
 
 def _label(values: Array | None, point: str) -> Matrix | None:

@@ -108,7 +108,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     floating = floats(model, wrench)
     if model.floating is None or sum(floating) != model.floating.shape[-1] or load_point != read_point:
         require_unmoved(model, wrench)
-    force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
+    force = model.output[..., model.output_index(load), :].mT
     values = model.seen(model.output_index(read), displacement(model, force))
     if any(floating):
         values[floating, :], values[:, floating] = 0.0, 0.0
@@ -161,7 +161,7 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
     """
     if kinematics.mobility == len(COMPONENTS) or found.load_point != found.read_point:
         return None
-    values = np.stack([_pushed(found), np.diagonal(found.stiffness.values, axis1=-2, axis2=-1)], axis=-1)
+    values = np.stack([_pushed(found), np.linalg.diagonal(found.stiffness.values)], axis=-1)
     rest = tuple(name for name in COMPONENTS if name not in kinematics.coordinates)
     kinds = (kinematics.coordinates, rest)
     motions, constraints = (by_freedom(values[..., [COMPONENTS.index(name) for name in names], :], names) for names in kinds)
@@ -180,7 +180,7 @@ def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
 
 def _pushed(result: Statics) -> Array:
     """1 / C_ii (..., 6), NaN along locked degrees of freedom."""
-    along = np.diagonal(result.compliance.values, axis1=-2, axis2=-1)
+    along = np.linalg.diagonal(result.compliance.values)
     if not np.isnan(result.stiffness.values).any():
         return 1.0 / along
     sizes = np.abs(np.real(along)).reshape(*along.shape[:-1], 2, 3)
@@ -208,7 +208,7 @@ def directional(tensor: Array) -> DirectionalStiffness:
     >>> directional(np.diag([1.0, 4.0])).principal.tolist()
     [4.0, 1.0]
     """
-    symmetric = 0.5 * (tensor + np.swapaxes(tensor, -1, -2))
+    symmetric = 0.5 * (tensor + tensor.mT)
     failed = np.any(np.isnan(symmetric), axis=(-2, -1), keepdims=True)
     values, vectors = np.linalg.eigh(np.where(failed, 0.0, np.real(symmetric)))
     values, vectors = np.where(failed[..., 0], np.nan, values), np.where(failed, np.nan, vectors)

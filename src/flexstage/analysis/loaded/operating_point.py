@@ -88,7 +88,7 @@ class OperatingPoint(InNotebook):
     @cached_property
     def state(self) -> State:
         """Equilibrium under the constant loads and the whole displacement."""
-        return self.reach(1.0) if self.at or self.fixed else self.rest
+        return self.reach(1.0) if self.loads or self.at or self.fixed else self.rest
 
     @cached_property
     def linear(self) -> LinearModel:

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.wrench import dead_wrenches
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, first_design, stack
+from flexstage.base.number import Array, first_design, matvec, stack
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.linear.static import displacement
 from flexstage.models.linear.undetermined import require_known
 from flexstage.parts.contact import Contact, Hertz, contact_stiffness, hertz
 from flexstage.parts.material import Material
@@ -56,9 +55,7 @@ def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
         return {}
     rows = tuple(f"{name}.{component}" for name in links for component in FORCES)
     require_known(model, rows)
-    load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
-    motion = displacement(model, load[..., None])
-    forces = np.real(model.seen(model.output_index(rows), motion)[..., 0])
+    forces = np.real(dead_wrenches(mechanism, model, rows))
     wrenches = forces.reshape(*forces.shape[:-1], len(links), 6)
     result: dict[str, Seating] = {}
     for index, (name, link) in enumerate(links.items()):
@@ -85,7 +82,7 @@ def _contact_forces(part: Contact, material: Material, contacts: Hertz, wrench: 
     """Normal force (..., c), compression positive, and magnitude of the tangential force of each contact."""
     scale = stack([*(3 * [1.0]), *(3 * [1.0 / np.real(np.asarray(part.radius))])])
     scaled = scale[..., :, None] * np.real(contact_stiffness(part, material)) * scale[..., None, :]
-    moved = scale * (np.linalg.pinv(scaled, rcond=_RANK, hermitian=True) @ (scale * wrench)[..., None])[..., 0]
+    moved = scale * matvec(np.linalg.pinv(scaled, rcond=_RANK, hermitian=True), scale * wrench)
     forces = (np.real(contacts.matrix) @ (np.real(contacts.motion) @ moved[..., None, :, None]))[..., 0]
     normals = np.real(contacts.normals)
     pull = np.sum(forces * normals, axis=-1)

@@ -8,10 +8,10 @@ the body; r are their positions relative to the body's reference point.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Annotated, Any, ClassVar, TypeAlias, TypeVar, cast
+from typing import Annotated, Any, ClassVar, TypeAlias, cast
 
 import numpy as np
 import scipy
@@ -19,7 +19,7 @@ import scipy
 from flexstage.analysis.workspace.load import SAFETY, dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.number import Array, first_design, stack
+from flexstage.base.number import Array, first_design, matvec, stack
 from flexstage.base.record import Heading, Layout
 from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse, below, few
@@ -27,21 +27,19 @@ from flexstage.base.units.quantity import LENGTH, RATIO
 from flexstage.beams.compliance import locked_freedoms as locked_by
 from flexstage.beams.geometric import Geometric, geometric
 from flexstage.beams.mass import mass
-from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, by_part, expand
 from flexstage.mechanism.assembly.moving_mass import carried_masses
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.large import Quadratic, Solver, least_ratios
 from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.models.linear.static import displacement, input_motion
-from flexstage.parts.material import Material
-from flexstage.parts.part import Part, push_of
+from flexstage.parts.part import push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
 
 DOUBTFUL = 20.0
 """Load factor below which the stiffness of the loaded stage differs from the nominal stiffness by more than about 5 %."""
 
-_Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
 """Relative softening below which the stage counts as not softened: rounding."""
@@ -243,8 +241,7 @@ class _Pieces:
         assembly, size = expand(_with_drawn_parts(mechanism)), len(model.coordinates)
         twists = {GROUND: Sparse(np.zeros(0, dtype=int), np.zeros((6, 0)), size)}
         twists |= {name: _rows(model, tuple(f"{name}.{component}" for component in COMPONENTS)) for name in assembly.bodies}
-        parts = dict(zip(assembly.links, _by_part(assembly.links.values(), geometric), strict=True))
-        return _Pieces(mechanism, assembly, model, twists, parts)
+        return _Pieces(mechanism, assembly, model, twists, by_part(assembly.links, geometric))
 
     @cached_property
     def is_large(self) -> bool:
@@ -325,7 +322,7 @@ def _dense(terms: _Terms, size: int) -> Array:
     for rows, law in terms:
         places, own = np.unique(rows.columns, return_inverse=True)
         motion = rows.values @ np.eye(len(places))[own]
-        smalls.append((places, _transposed(motion) @ law @ motion))
+        smalls.append((places, motion.mT @ law @ motion))
     batch = np.broadcast_shapes(*(small.shape[:-2] for _, small in smalls))
     result = np.zeros((*batch, size, size), dtype=np.result_type(float, *(small for _, small in smalls)))
     for places, small in smalls:
@@ -336,7 +333,7 @@ def _dense(terms: _Terms, size: int) -> Array:
 def _turning_law(reference: Array, acting: list[tuple[Array, Array]]) -> Array:
     """Rotational stiffness (..., 3, 3) of forces at points of a rigid body."""
     moment = sum((force[..., :, None] * (point - reference)[..., None, :] for force, point in acting), np.zeros((3, 3)))
-    return np.trace(moment, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - 0.5 * (moment + _transposed(moment))
+    return np.linalg.trace(moment)[..., None, None] * np.eye(3) - 0.5 * (moment + moment.mT)
 
 
 def _with_drawn_parts(mechanism: Mechanism) -> Mechanism:
@@ -383,11 +380,11 @@ def _weights(mechanism: Mechanism) -> _Loads:
     loads: dict[str, list[tuple[Array, Array]]] = {name: [] for name in assembly.bodies}
     for name, placed in assembly.bodies.items():
         loads[name] += [(_force(item.mass[..., None] * gravity), item.centre) for item in carried_masses(mechanism, placed)]
-    masses = _by_part(assembly.links.values(), mass)
-    for link, own in zip(assembly.links.values(), masses, strict=True):
-        back = _transposed(link.frame.rotation)
-        fall = (back @ gravity[..., None])[..., 0]
-        pulled = own[..., :12, :12] @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
+    masses = by_part(assembly.links, mass)
+    for name, link in assembly.links.items():
+        back = link.frame.rotation.mT
+        fall = matvec(back, gravity)
+        pulled = masses[name][..., :12, :12] @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
         for place, body in enumerate(link.joins):
             if body != GROUND:
                 wrench = (spatial_rotation(link.frame.rotation) @ pulled[..., 6 * place : 6 * place + 6, :])[..., 0]
@@ -396,18 +393,6 @@ def _weights(mechanism: Mechanism) -> _Loads:
         if force.body != GROUND:
             loads[force.body].append((_force(stack(force.force)), stack(force.at)))
     return loads
-
-
-def _by_part(links: Iterable[PlacedLink], work: Callable[[Part, Material | None], _Of]) -> list[_Of]:
-    """Value of a function for every link, computed once for each part and material."""
-    known: dict[tuple[int, int], _Of] = {}
-    results: list[_Of] = []
-    for link in links:
-        key = id(link.part), id(link.material)
-        if key not in known:
-            known[key] = work(link.part, link.material)
-        results.append(known[key])
-    return results
 
 
 def _force(force: Array) -> Array:
@@ -425,14 +410,14 @@ def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dic
     unmet = np.zeros((*batch, 6 * len(order)), dtype=np.result_type(*sprung.values()))
     for name, placed in assembly.bodies.items():
         for load, point in loads.get(name, []):
-            unmet[..., order[name]] += (_transposed(transport(point - placed.reference)) @ load[..., None])[..., 0]
+            unmet[..., order[name]] += matvec(transport(point - placed.reference).mT, load)
     columns: list[Array] = []
     for name, link in assembly.links.items():
         carry = np.zeros((*batch, 6 * len(order), 6), dtype=np.result_type(unmet, link.frame.position))
         for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
             if body != GROUND:
-                carry[..., order[body], :] = sign * _transposed(twist_transform(link.frame, assembly.bodies[body].reference))
-        unmet = unmet + (carry @ sprung[name][..., None])[..., 0]
+                carry[..., order[body], :] = sign * twist_transform(link.frame, assembly.bodies[body].reference).mT
+        unmet = unmet + matvec(carry, sprung[name])
         columns.append(carry[..., locked[name]])
     held = np.concatenate(columns, axis=-1)
     forces = -np.linalg.pinv(np.real(held)) @ unmet[..., None]
@@ -541,7 +526,3 @@ def _normal(root: Array, matrix: Array) -> Array:
 def _rows(model: LinearModel, names: tuple[str, ...]) -> Sparse:
     index = model.output_index(names)
     return cast("Rows", model.output).few(index[0], len(index)) if model.is_sparse else few(model.output[..., index, :])
-
-
-def _transposed(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

@@ -26,15 +26,16 @@ def standing(mechanism: Mechanism) -> LinearModel:
     >>> len(standing(parallelogram()).coordinates)
     18
     """
-    model, result = _under_load(mechanism)
-    if result is not None:
-        require(result.refusals)
-    return model
+    result = under_load(mechanism)
+    require(() if result is None else result.refusals)
+    return drawn(mechanism)
 
 
+@SESSION.keep(2)
 def under_load(mechanism: Mechanism) -> Stability | None:
     """Return the load factors of the permanent load with zero strokes; `None` for a batch or a stage with superelements."""
-    return _under_load(mechanism)[1]
+    model = drawn(mechanism)
+    return None if model.designs or expand(mechanism).superelements else stability(mechanism, model)
 
 
 @SESSION.keep(2)
@@ -59,14 +60,6 @@ def kinematics(mechanism: Mechanism) -> Kinematics:
     return ideal(mechanism)
 
 
-@SESSION.keep(2)
-def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
-    """The lumped model and its load factors. Cached by description."""
-    model = drawn(mechanism)
-    known = not model.designs and not expand(mechanism).superelements
-    return model, stability(mechanism, model) if known else None
-
-
 def require_standing(mechanism: Mechanism) -> None:
     """Raise `DesignError` if a stage is unstable in its nominal position. A stage without a lumped model is not checked.
 
@@ -74,11 +67,10 @@ def require_standing(mechanism: Mechanism) -> None:
     >>> require_standing(parallelogram())
     """
     try:
-        result = _under_load(mechanism)[1]
+        result = under_load(mechanism)
     except DesignError:
         return
-    if result is not None:
-        require(result.refusals)
+    require(() if result is None else result.refusals)
 
 
 @SESSION.keep(2)

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, magnitude, stack
+from flexstage.base.number import Array, magnitude, matvec, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, FORCE, STIFFNESS
 from flexstage.mechanism.assembly.expand import expand
@@ -88,7 +88,7 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     strokes = [assembly.actuator(name).free_deformation for name in names]
     slope = -stack([_along(model, link, name, free) for (name, link), free in zip(assembly.strokes.items(), strokes, strict=True)])
     laws = [model.stiffness[link].law[..., :6, :6] for link in links]
-    own = stack([np.sum((law @ along[..., None])[..., 0] * along, axis=-1) for law, along in zip(laws, strokes, strict=True)])
+    own = stack([np.sum(matvec(law, along) * along, axis=-1) for law, along in zip(laws, strokes, strict=True)])
     free = stack([part.stroke for part in stroke_actuators(mechanism).values()])
     against = slope * own / (own - slope)
     return StackLine(
@@ -134,6 +134,6 @@ def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) ->
     share = magnitude(mapping.values)
     none = share == 0.0
     reach = np.min(np.where(none, np.inf, available[..., :, None] / np.where(none, 1.0, share)), axis=-2)
-    travel = reach * np.diagonal(gain, axis1=-2, axis2=-1)
-    stiffness = 1.0 / np.diagonal(compliance, axis1=-2, axis2=-1)
+    travel = reach * np.linalg.diagonal(gain)
+    stiffness = 1.0 / np.linalg.diagonal(compliance)
     return PlatformLine(mapping.columns, travel, stiffness, travel * stiffness, model.provenance)

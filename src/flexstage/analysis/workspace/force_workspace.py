@@ -8,10 +8,10 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stops import STOPS
 from flexstage.analysis.workspace.strength import sized_links, stress_use
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
+from flexstage.analysis.workspace.wrench import dead_wrenches
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix, ratio_units
@@ -23,7 +23,7 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
+from flexstage.models.linear.static import input_motion, part_deformation, static_gain
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.profile import single
 from flexstage.parts.voice_coil import Coil
@@ -151,7 +151,7 @@ def _moved(model: LinearModel, point: str, coordinates: tuple[str, ...]) -> tupl
     outputs = tuple(f"{point}.{name}" for name in coordinates)
     wrenches = tuple(f"{point}.{FORCES[COMPONENTS.index(name)]}" for name in coordinates)
     gain = static_gain(model, outputs, model.actuators).values
-    compliance = np.diagonal(static_gain(model, outputs, wrenches).values, axis1=-2, axis2=-1)
+    compliance = np.linalg.diagonal(static_gain(model, outputs, wrenches).values)
     strains = part_deformation(model, input_motion(model, model.input_index(model.actuators)))
     energy = sum(np.sum(strain * (model.stiffness[name].law @ strain), axis=-2) for name, strain in strains.items())
     most = np.sqrt(np.abs(np.real(compliance[..., :, None] * np.asarray(energy)[..., None, :])))
@@ -199,7 +199,7 @@ def _inverse(gain: Array, sizes: list[float]) -> tuple[Array, tuple[bool, ...]]:
 
 def _least_norm(gain: Array) -> Array:
     """G = C^T (C C^T)^-1, equal to C^-1 for a square C; NaN for designs in which no input moves a coordinate."""
-    transposed = np.swapaxes(gain, -1, -2)
+    transposed = gain.mT
     square = gain if gain.shape[-1] == gain.shape[-2] else gain @ transposed
     lost = np.linalg.det(np.real(square))[..., None, None] == 0.0
     inverse = np.linalg.inv(np.where(lost, np.eye(square.shape[-1]), square))
@@ -268,9 +268,7 @@ def _stress(
         return
     names = tuple(f"{link}.{force}" for link in sized for force in FORCES)
     per = static_gain(model, names, inputs).values @ per_motion
-    load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
-    dead = model.seen(model.output_index(names), displacement(model, load[..., None]))[..., 0]
-    yield _YIELD, _yielding(sized, dead, np.moveaxis(per, -1, 0))
+    yield _YIELD, _yielding(sized, dead_wrenches(mechanism, model, names), np.moveaxis(per, -1, 0))
 
 
 def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array:
@@ -301,22 +299,15 @@ def _bounds(names: tuple[str, ...], causes: _Causes, units: tuple[str, ...]) -> 
 
 def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], held: Array) -> dict[str, Matrix]:
     """Current, voltage, power and temperature rise of every coil for inputs (..., n, f)."""
-    coils = [name for name in inputs if isinstance(assembly.actuator(name), Coil)]
-    found: dict[str, list[Array]] = {"current": [], "voltage": [], "power": [], "rise": []}
-    for name in coils:
-        current, part = magnitude(held[..., inputs.index(name), :]), assembly.actuator(name)
-        assert isinstance(part, Coil)  # noqa: S101  coils are
-        resistance, thermal = (np.nan if value is None else value for value in (part.resistance, part.thermal_resistance))
-        resistance = np.asarray(resistance)[..., None]
-        found["current"].append(current)
-        found["voltage"].append(resistance * current)
-        found["power"].append(resistance * current**2)
-        found["rise"].append(resistance * current**2 * np.asarray(thermal)[..., None])
-    none = np.zeros((*held.shape[:-2], held.shape[-1], 0))
-    return {
-        key: Matrix(stack(list(rows)) if rows else none, names, tuple(coils), unit)
-        for (key, rows), unit in zip(found.items(), ("A", "V", "W", "K"), strict=True)
-    }
+    coils = {name: part for name in inputs if isinstance(part := assembly.actuator(name), Coil)}
+    current = magnitude(held[..., [inputs.index(name) for name in coils], :]).mT
+    resistance, thermal = (
+        stack([np.nan if value is None else value for value in (getattr(part, field) for part in coils.values())])[..., None, :]
+        for field in ("resistance", "thermal_resistance")
+    )
+    power = resistance * current**2
+    found = {"current": (current, "A"), "voltage": (resistance * current, "V"), "power": (power, "W"), "rise": (power * thermal, "K")}
+    return {key: Matrix(values, names, tuple(coils), unit) for key, (values, unit) in found.items()}
 
 
 def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:

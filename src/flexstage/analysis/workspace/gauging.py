@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, Number, magnitude, stack
+from flexstage.base.number import Array, Number, magnitude, matvec, stack
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import SHARE, Bound
 from flexstage.mechanism.assembly.expand import Assembly, expand
@@ -140,7 +140,7 @@ def _pseudo_inverse(matrix: Array) -> Array:
         return back
     step = np.imag(matrix)
     beside = np.eye(real.shape[-2]) - real @ back
-    change = back @ np.swapaxes(back, -1, -2) @ np.swapaxes(step, -1, -2) @ beside - back @ step @ back
+    change = back @ back.mT @ step.mT @ beside - back @ step @ back
     return back + 1j * change
 
 
@@ -168,9 +168,9 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
         inverse=inverse,
         gauge_steps=steps,
         gauge_noise=noises,
-        worst=(magnitude(inverse.values) @ steps[..., None])[..., 0],
-        rms=np.sqrt((squares @ (steps**2)[..., None])[..., 0]),
-        noise=np.sqrt((squares @ (noises**2)[..., None])[..., 0]),
+        worst=matvec(magnitude(inverse.values), steps),
+        rms=np.sqrt(matvec(squares, steps**2)),
+        noise=np.sqrt(matvec(squares, noises**2)),
         provenance=kinematics.provenance,
     )
 
@@ -217,7 +217,7 @@ def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
     >>> (1e6 * gauge_swing(ideal(double_triangle()), {"z": 150e-6})).round(1).tolist()
     [0.0, 0.0, 0.0, 150.0, 150.0, 150.0]
     """
-    return (magnitude(kinematics.sensing @ kinematics.motion) @ _half(kinematics, command)[..., None])[..., 0]
+    return matvec(magnitude(kinematics.sensing @ kinematics.motion), _half(kinematics, command))
 
 
 def half_ranges(assembly: Assembly) -> Array:

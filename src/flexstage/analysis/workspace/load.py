@@ -11,7 +11,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, Number, Vector, stack
+from flexstage.base.number import Array, Number, Vector, matvec, stack
 from flexstage.base.record import Along, Graded, Heading, Layout, Mark
 from flexstage.base.units.quantity import FORCE, SHARE, Bound
 from flexstage.mechanism.assembly.expand import Assembly, expand
@@ -79,15 +79,12 @@ class LoadShare(Result):
         """Return the compression (..., n) [N] due to a force (..., 3) [N] on the platform at a point (..., 3) [m], in stage axes."""
         moment = np.cross(at - self.reference, force)
         wrench = np.concatenate(np.broadcast_arrays(force, moment), axis=-1)
-        return (self.share.values @ wrench[..., None])[..., 0]
+        return matvec(self.share.values, wrench)
 
     def range(self, limits: StrokeLimits) -> tuple[Array, Array]:
         """Return the exact least and largest compression (..., n) [N] over the box of strokes under permanent load."""
-        ends = np.stack([self.stroke.values * limits.low[..., None, :], self.stroke.values * limits.high[..., None, :]])
-        return (
-            self.compression + np.sum(np.min(ends, axis=0), axis=-1),
-            self.compression + np.sum(np.max(ends, axis=0), axis=-1),
-        )
+        least, largest = limits.swing(self.stroke.values)
+        return self.compression + least, self.compression + largest
 
     def usage(self, compression: Array) -> Array:
         """Return the ratio (..., n) of compression, including preload, to the maximum load; NaN if unspecified."""
@@ -176,9 +173,12 @@ def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
     ['own weight']
     """
     require_balanced(model, "gravity", stack((*mechanism.gravity, 0.0, 0.0, 0.0)))
-    carried = {name: applied_forces(mechanism, model, _weight(mechanism, name)) for name in mechanism.payloads}
+    carried = {
+        name: applied_forces(mechanism, model, Force(load.body, load.at, _times(load.mass, mechanism.gravity)))
+        for name, load in mechanism.payloads.items()
+    }
     gravity, falling = stack(mechanism.gravity), model.base_inertia[..., :3]
-    everything = falling @ gravity if gravity.ndim == 1 else (falling @ gravity[..., None])[..., 0]
+    everything = falling @ gravity if gravity.ndim == 1 else matvec(falling, gravity)
     own = everything - sum(carried.values(), np.zeros(len(model.coordinates)))
     forces = {name: applied_forces(mechanism, model, force) for name, force in mechanism.forces.items()}
     return {OWN_WEIGHT: own, **{f"payload {name}": load for name, load in carried.items()}, **forces, **_preloads(mechanism, model)}
@@ -214,12 +214,6 @@ def _times(factor: Number, direction: Vector) -> Vector:
     return x, y, z
 
 
-def _weight(mechanism: Mechanism, name: str) -> Force:
-    load = mechanism.payloads[name]
-    x, y, z = (load.mass * component for component in mechanism.gravity)
-    return Force(load.body, load.at, (x, y, z))
-
-
 def applied_forces(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:
     """Compute generalised forces (..., n) of a force on a body at a point, in the stage's frame; zero on the ground.
 
@@ -233,11 +227,11 @@ def applied_forces(mechanism: Mechanism, model: LinearModel, force: Force) -> Ar
         return np.zeros(len(model.coordinates))
     arm = stack(force.at) - expand(mechanism).bodies[force.body].reference
     push = stack((*force.force, 0.0, 0.0, 0.0))
-    wrench = np.swapaxes(transport(arm), -1, -2) @ push[..., None]
+    wrench = transport(arm).mT @ push[..., None]
     index = model.output_index(tuple(f"{force.body}.{name}" for name in COMPONENTS))
     require_balanced(model, f"a force on {force.body}", wrench[..., 0], index)
     rows = model.output[..., index, :]
-    return (np.swapaxes(rows, -1, -2) @ wrench)[..., 0]
+    return (rows.mT @ wrench)[..., 0]
 
 
 def _stated(values: list[Number | None]) -> Array:

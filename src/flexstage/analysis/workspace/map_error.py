@@ -12,7 +12,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, first_design, index_of_largest
+from flexstage.base.number import Array, first_design, index_of_largest, matvec
 from flexstage.base.record import INNER, VIEW, Layout
 from flexstage.base.units.quantity import LENGTH
 from flexstage.mechanism.assembly.expand import expand
@@ -89,7 +89,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
     depth = len(design_shape(mechanism, kinematics))
     if len(kinematics.actuators) > kinematics.mobility:
         vertices = np.moveaxis(reachable(kinematics.mapping, limits).vertices, -2, 0)
-        corners = (kinematics.mapping.values @ np.nan_to_num(beside(vertices, depth))[..., None])[..., 0]
+        corners = matvec(kinematics.mapping.values, np.nan_to_num(beside(vertices, depth)))
         return map_error_at(mechanism, kinematics, np.concatenate([corners, 0.5 * corners]))
     points = np.concatenate([limits.points(0), _faces(limits), _interior(limits, inside)])
     return map_error_at(mechanism, kinematics, beside(points, depth))
@@ -110,7 +110,7 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
             "linear map error", f"wrong number of strokes (got {strokes.shape[-1]}, expected {count})", "Use one stroke per actuator"
         )
     moved = forward_kinematics(mechanism, kinematics, strokes)
-    linear = (kinematics.jacobian.values @ strokes[..., None])[..., 0]
+    linear = matvec(kinematics.jacobian.values, strokes)
     rounding = _ROUNDING * np.repeat([_reach(mechanism), 1.0], 3)
     errors = moved.pose.vector - linear
     errors = np.where(np.abs(errors) > rounding, errors, 0.0)

@@ -12,7 +12,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.base.record import VIEW, Layout
 from flexstage.base.units.quantity import RATIO
 from flexstage.spatial.frame import MOTION
@@ -39,7 +39,7 @@ class Polytope(Result):
 
     def contains(self, pose: Array) -> Array:
         """Return whether poses (..., f) [m, rad] can be reached; the boundary is included."""
-        used = (self.normals @ pose[..., None])[..., 0]
+        used = matvec(self.normals, pose)
         return np.all(used <= self.offsets + _TOLERANCE * np.abs(self.offsets), axis=-1)
 
     @property
@@ -71,7 +71,7 @@ def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") ->
     offsets = np.concatenate([limits.high, -limits.low], axis=-1)
     if len(mapping.rows) == len(mapping.columns):
         inverse = np.linalg.inv(mapping.values)
-        vertices = limits.corners @ np.swapaxes(inverse, -1, -2)
+        vertices = limits.corners @ inverse.mT
         volume = np.prod(limits.full, axis=-1) * np.abs(np.linalg.det(inverse))
     else:
         vertices, volume = _redundant(normals, np.broadcast_to(offsets, normals.shape[:-1]))

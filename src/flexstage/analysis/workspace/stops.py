@@ -6,7 +6,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, mapping_at, single_axis, stroke_limits
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.number import Array, stack
+from flexstage.base.number import join, stack
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -50,15 +50,16 @@ def with_stops(
         return mapping, limits
     rows = mapping_at(mechanism, kinematics, point, mapping=_closing(mechanism, kinematics, mapping.columns)).values
     low, high = (stack([getattr(item, side) for item in stops.values()]) for side in ("low", "high"))
-    least, largest = _reached(mapping.values, rows, limits)
+    gains = np.real(rows) @ np.linalg.pinv(np.real(mapping.values))  # an upper bound for redundant strokes
+    least, largest = map(np.real, limits.swing(gains))
     met = np.any(np.atleast_2d((np.real(low) > least) | (np.real(high) < largest)).reshape(-1, len(stops)), axis=0)
     if not np.any(met):
         return mapping, limits
     names = tuple(f"{STOPS}/{name}" for name, kept in zip(stops, met.tolist(), strict=True) if kept)
     low = np.where(np.isinf(low), 2.0 * least - largest, low)
     units = ratio_units(("m",) * (len(mapping.rows) + len(names)), tuple(map(MOTION.unit, mapping.columns)))
-    values = _joined(mapping.values, rows[..., met, :], -2)
-    ends = (_joined(strokes, gaps[..., met], -1) for strokes, gaps in ((limits.low, low), (limits.high, high)))
+    values = join([mapping.values, rows[..., met, :]])
+    ends = (join([strokes[..., None], gaps[..., met, None]])[..., 0] for strokes, gaps in ((limits.low, low), (limits.high, high)))
     return Matrix(values, mapping.rows + names, mapping.columns, units), StrokeLimits(limits.actuators + names, *np.broadcast_arrays(*ends))
 
 
@@ -71,18 +72,4 @@ def _closing(mechanism: Mechanism, kinematics: Kinematics, columns: tuple[str, .
     ]
     names = tuple(f"{STOPS}/{name}" for name in assembly.stops)
     units = ratio_units(("m",) * len(names), tuple(map(MOTION.unit, columns)))
-    return Matrix(np.concatenate(np.broadcast_arrays(*seen), axis=-2), names, columns, units)
-
-
-def _reached(mapping: Array, rows: Array, limits: StrokeLimits) -> tuple[Array, Array]:
-    """Range of motion at stops (..., s) over the box of strokes; an upper bound for redundant strokes."""
-    gains = np.real(rows) @ np.linalg.pinv(np.real(mapping))
-    ends = np.stack(np.broadcast_arrays(*(gains * np.real(each)[..., None, :] for each in (limits.low, limits.high))))
-    return np.sum(np.min(ends, axis=0), axis=-1), np.sum(np.max(ends, axis=0), axis=-1)
-
-
-def _joined(first: Array, second: Array, axis: int) -> Array:
-    """Two arrays concatenated along an axis, batch axes broadcast."""
-    inner = -axis
-    batch = np.broadcast_shapes(first.shape[:-inner], second.shape[:-inner])
-    return np.concatenate([np.broadcast_to(each, batch + each.shape[-inner:]) for each in (first, second)], axis=axis)
+    return Matrix(join(seen), names, columns, units)

@@ -158,12 +158,9 @@ def _input_unit(model: LinearModel, name: str) -> str:
 
 def _places(links: Mapping[str, PlacedLink], wrenches: Array) -> Iterator[str]:
     """End and faces of the largest stress of links under their wrenches (L, 6); the body of an end without the name of its instance."""
-    groups: dict[int, list[int]] = {}
-    result: dict[int, tuple[int, int]] = {}
-    for index, link in enumerate(links.values()):
-        groups.setdefault(id(link.part), []).append(index)
-    for members in groups.values():
-        first = list(links.values())[members[0]]
+    placed, result = list(links.values()), dict[int, tuple[int, int]]()
+    for members in _groups(placed):
+        first = placed[members[0]]
         result |= dict(zip(members, zip(*stressed_place(_real(first.part), first.material, wrenches[members]), strict=True), strict=True))
     for index, (name, link) in enumerate(links.items()):
         end, face = result[index]
@@ -199,16 +196,21 @@ def _has_section(link: PlacedLink) -> bool:
     return not isinstance(link.part, Restricted) and has_section(link.part)
 
 
+def _groups(links: list[PlacedLink]) -> list[list[int]]:
+    """Indices of links with the same part and material."""
+    groups: dict[tuple[int, int], list[int]] = {}
+    for index, link in enumerate(links):
+        groups.setdefault((id(link.part), id(link.material)), []).append(index)
+    return list(groups.values())
+
+
 _Row: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 
 
 def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]:
     """Nominal and peak stress, yield stress, strokes, least limit and wrench of links at their worst corners, grouped by part."""
-    groups: dict[tuple[int, int], list[int]] = {}
-    for index, link in enumerate(links):
-        groups.setdefault((id(link.part), id(link.material)), []).append(index)
     rows: dict[int, _Row] = {}
-    for members in groups.values():
+    for members in _groups(links):
         first = links[members[0]]
         own = np.moveaxis(wrenches[..., members, :], -2, 0)
         peaks = _stress(_real(first.part), first, np.real(own))[1]

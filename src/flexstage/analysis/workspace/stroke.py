@@ -12,7 +12,7 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
-from flexstage.base.number import Array, Number, magnitude, stack
+from flexstage.base.number import Array, Number, first_design, magnitude, matvec, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
@@ -46,6 +46,11 @@ class StrokeLimits:
         """Stroke limits relative to zero voltage, for a stage assembled without voltage."""
         zero = self.low if self.zero is None else self.zero
         return StrokeLimits(self.actuators, self.low - zero, self.high - zero, np.zeros_like(self.low - zero))
+
+    def swing(self, gains: Array) -> tuple[Array, Array]:
+        """Return the least and largest values (..., r) of linear functions of the strokes with the `gains` (..., r, n)."""
+        ends = [gains * each[..., None, :] for each in (self.low, self.high)]
+        return np.sum(np.minimum(*ends), axis=-1), np.sum(np.maximum(*ends), axis=-1)
 
     @property
     def corners(self) -> Array:
@@ -190,7 +195,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
     """
     mapping = kinematics.mapping if mapping is None else mapping
     motion = point_motion(mechanism, kinematics, point)[..., [COMPONENTS.index(name) for name in mapping.columns], :]
-    first = np.real(motion.reshape(-1, *motion.shape[-2:])[0])
+    first = np.real(first_design(motion, 2))
     if np.linalg.cond(first) > 1e9:
         raise refuse(point, f"its motions along {', '.join(mapping.columns)} are not independent", "Choose another point")
     return Matrix(mapping.values @ np.linalg.inv(motion), mapping.rows, mapping.columns, mapping.unit)
@@ -228,7 +233,7 @@ def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, pr
     ends = np.stack([limits.low[..., :, None] / gain, limits.high[..., :, None] / gain])
     above = np.nan_to_num(np.max(ends, axis=0), nan=np.inf)
     below = np.nan_to_num(np.min(ends, axis=0), nan=-np.inf)
-    first = np.minimum(above, -below).reshape(-1, *above.shape[-2:])[0]
+    first = first_design(np.minimum(above, -below), 2)
     limiting = tuple(mapping.rows[index] for index in np.argmin(np.round(first / np.min(first, axis=0), 9), axis=0))
     return SingleAxis(mapping.columns, np.max(below, axis=-2), np.min(above, axis=-2), limiting, at, provenance)
 
@@ -249,6 +254,6 @@ def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Num
         if name not in mapping.columns
     )
     half = stack([command.get(name, 0.0) for name in mapping.columns])
-    demand = (magnitude(mapping.values) @ magnitude(half)[..., None])[..., 0]
+    demand = matvec(magnitude(mapping.values), magnitude(half))
     available = np.minimum(0.0 - limits.low, limits.high)  # never -0
     return Utilisation(mapping.rows, dict(command), demand, available, provenance)

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, static_gain
@@ -44,9 +44,9 @@ def corner_wrenches(
     gain = static_gain(model, names, limits.actuators if command is None else command.mapping.rows).values
     dead = dead_wrenches(mechanism, model, names)
     if command is not None:
-        dead = dead + (gain @ command.start[..., None])[..., 0]
+        dead = dead + matvec(gain, command.start)
         gain = gain @ command.mapping.part(command.mapping.rows, limits.actuators).values
-    total = (gain @ limits.points(max(gain.ndim - 2, dead.ndim - 1))[..., None])[..., 0] + dead
+    total = matvec(gain, limits.points(max(gain.ndim - 2, dead.ndim - 1))) + dead
     return total.reshape(*total.shape[:-1], len(links), len(FORCES))
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, TypeAlias, cast
+from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 
@@ -54,6 +54,7 @@ from flexstage.parts.superelement import Superelement
 from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
+_Value = TypeVar("_Value")
 _EXAMPLES = {"at": '["1.54 mm", "1.54 mm", "1.54 mm"]', "along": '"x"'}
 NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a separate unit, or mirror a unit without this part")
 """Error and hint for a mirrored link whose part has no known mirror image."""
@@ -672,3 +673,16 @@ def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: s
         gauge = mechanism.sensors[place.gauge]
         for name, link in zip(copy_names(key), (links[each] for each in link_names(place.link)), strict=True):
             yield PlacedGauge(name, gauge, (sight_of_link(*link.joins, link.frame, link.part, gauge),))
+
+
+def by_part(links: Mapping[str, PlacedLink], function: Callable[[Part, Material | None], _Value]) -> dict[str, _Value]:
+    """Compute a value for every link, once for each part and material.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> by_part(expand(parallelogram()).links, lambda part, _: part.kind)["left"]
+    'leaf'
+    """
+    keys = {name: (id(link.part), id(link.material)) for name, link in links.items()}
+    distinct = {keys[name]: link for name, link in links.items()}
+    values = {key: function(link.part, link.material) for key, link in distinct.items()}
+    return {name: values[key] for name, key in keys.items()}

@@ -71,14 +71,14 @@ def compliance_root(model: LinearModel, rows: Array) -> Array:
     >>> round(1e-6 / float(root[:, 2] @ root[:, 2]), 3)  # K_z, N/um
     10.093
     """
-    turned = np.swapaxes(rows, -1, -2)
+    turned = rows.mT
     if model.floating is not None:
         solved = eigen(model)
         elastic = solved.values > 0.0
-        root = np.swapaxes(rows @ solved.shapes[:, elastic], -1, -2) / np.sqrt(solved.values[elastic])[:, None]
+        root = (rows @ solved.shapes[:, elastic]).mT / np.sqrt(solved.values[elastic])[:, None]
         return np.concatenate([root, np.zeros((1, len(COMPONENTS)))])
     if model.is_sparse:
-        return np.swapaxes(cholesky(rows @ model.solve(turned)), -1, -2)
+        return cholesky(rows @ model.solve(turned)).mT
     return np.linalg.solve(cholesky(model.stiffness_matrix), turned)
 
 

@@ -55,7 +55,7 @@ def _nonzero(values: Array) -> Array:
 
 
 def _diagonal(matrix: Array) -> Array:
-    return np.diagonal(matrix, axis1=-2, axis2=-1)
+    return np.linalg.diagonal(matrix)
 
 
 def viscous_coupling(model: LinearModel, solved: Eigen) -> Array:
@@ -71,7 +71,7 @@ def viscous_coupling(model: LinearModel, solved: Eigen) -> Array:
     total: Array = np.zeros((solved.shapes.shape[-1],) * 2)
     for name, law in model.viscous.items():
         strain = model.stiffness[name].operator[..., : law.shape[-1], :] @ solved.shapes
-        total = total + np.swapaxes(strain, -1, -2) @ law @ strain
+        total = total + strain.mT @ law @ strain
     return total
 
 
@@ -117,6 +117,6 @@ def structural_stiffness(model: LinearModel) -> Array:
     """
     total = model.stiffness_matrix.astype(complex)
     for part in model.stiffness.values():
-        lost = np.asarray(part.loss_factor)[..., None, None] * (np.swapaxes(part.operator, -1, -2) @ part.law @ part.operator)
+        lost = np.asarray(part.loss_factor)[..., None, None] * (part.operator.mT @ part.law @ part.operator)
         total = total + 1j * lost
     return total

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.finding import Finding, require, suggest_nearest
-from flexstage.base.number import Array
+from flexstage.base.number import Array, join
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.model import Channel, LinearModel
 from flexstage.models.linear.undetermined import require_held, require_known
@@ -65,11 +65,11 @@ def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterab
     return Ports(
         inputs=tuple(part[0] for part in parts),
         outputs=tuple(model.outputs[number] for number in picked),
-        force=_side_by_side([part[1] for part in parts]),
-        inertial=_side_by_side([part[2] for part in parts]),
+        force=join([part[1] for part in parts], axis=-1),
+        inertial=join([part[2] for part in parts], axis=-1),
         output=model.output[..., picked, :],
-        feedthrough=_side_by_side([part[3] for part in parts])[..., picked, :],
-        lost=_side_by_side([_loss_rows(model, name, sources) for name in columns]),
+        feedthrough=join([part[3] for part in parts], axis=-1)[..., picked, :],
+        lost=join([_loss_rows(model, name, sources) for name in columns], axis=-1),
         loss=np.stack(np.broadcast_arrays(*(_loss(model, name) for name in rows)), axis=-1),
     )
 
@@ -131,7 +131,7 @@ def _column(model: LinearModel, name: str, by_name: dict[str, int], sources: dic
         return Channel(name, TWIST_UNITS[axis]), np.zeros_like(inertial), inertial, model.rigid_output[..., [axis]]
     axis = FORCES.index(component)
     row = model.output[..., [by_name[f"{owner}.{COMPONENTS[axis]}"]], :]
-    force = np.swapaxes(row, -1, -2)
+    force = row.mT
     return Channel(name, WRENCH_UNITS[axis]), force, np.zeros_like(force), np.zeros((len(model.outputs), 1))
 
 
@@ -143,8 +143,3 @@ def _loss(model: LinearModel, output: str) -> Array:
     owner, _, component = output.rpartition(".")
     force = component in FORCES and owner in model.stiffness
     return np.asarray(model.stiffness[owner].loss_factor if force else 0.0)
-
-
-def _side_by_side(columns: list[Array]) -> Array:
-    batch = np.broadcast_shapes(*(column.shape[:-2] for column in columns))
-    return np.concatenate([np.broadcast_to(column, (*batch, *column.shape[-2:])) for column in columns], axis=-1)

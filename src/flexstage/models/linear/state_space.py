@@ -102,7 +102,7 @@ def _damped_by_inputs(model: LinearModel, solved: Eigen, chosen: Ports) -> Array
     total: Array = np.zeros((solved.shapes.shape[-1], len(chosen.inputs)))
     for name, law in model.viscous.items():
         strain = model.stiffness[name].operator[..., : law.shape[-1], :] @ solved.shapes
-        total = total + np.swapaxes(strain, -1, -2) @ law @ imposed_on(model, name, chosen)
+        total = total + strain.mT @ law @ imposed_on(model, name, chosen)
     return total
 
 

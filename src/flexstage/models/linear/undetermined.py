@@ -116,7 +116,7 @@ def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int
     >>> require_balanced(lumped(parallelogram()), "gravity", np.array([0.0, 0.0, -9.8, 0.0, 0.0, 0.0]))
     """
     if model.floating is not None:
-        force = model.base_inertia @ load if rows is None else np.swapaxes(model.output[rows], -1, -2) @ load
+        force = model.base_inertia @ load if rows is None else model.output[rows].mT @ load
         if np.any(np.abs(model.floating.T @ force) > _SEEN * (np.abs(model.floating).T @ np.abs(force))):
             raise refuse(
                 where,

@@ -159,7 +159,7 @@ def _group(group: Flexures) -> tuple[Mapping[str, int], Mapping[str, Array]] | N
         return None
     rule = gauss(points)
     weight = law.line_mass * law.length**3 / law.rigidity
-    stiff = np.max(np.diagonal(law.form, axis1=-2, axis2=-1), axis=-1)
+    stiff = np.max(np.linalg.diagonal(law.form), axis=-1)
     scalar = [law.length, law.rigidity, law.trapeze, law.stretch[:, 0], law.stretch[:, 1], weight, stiff]
     arrays: tuple[Array, ...] = (
         *(rule.weights, rule.running, np.diff(rule.knots), 1.0 - rule.points),

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.models.nonlinear.elements.condense import FlexureResponse, condense, relax_fields
 from flexstage.models.nonlinear.elements.corotated import stiffen_ports
@@ -123,15 +123,15 @@ def flexure_state(group: Flexures, pose: Pose, number: int, loads: Loads) -> Fle
     law = group.law
     turn, other = _gather(pose.turn, group.first), _gather(pose.turn, group.second)
     frame = turn @ group.turn[:, None]
-    onset, arm = (_rotate(each, arms[:, None]) for each, arms in ((turn, group.arm_first), (other, group.arm_second)))
+    onset, arm = (matvec(each, arms[:, None]) for each, arms in ((turn, group.arm_first), (other, group.arm_second)))
     across = _gather(pose.position, group.second) + arm - _gather(pose.position, group.first) - onset
     length = law.length[:, None, None]
     weight = flexure_weight(law, frame, loads)
     strain, force, moment = pose.strain[number], pose.wrench[number][..., :3], pose.wrench[number][..., 3:]
     lies = shape(law, strain, force, weight)
     slope = tangent(law, strain, moment, lies)
-    twisted = logarithm(lies.end_turn @ _transpose(other @ group.turn[:, None]) @ frame)
-    gap = np.concatenate([lies.end - _rotate(_transpose(frame), across) / length, twisted], axis=-1)
+    twisted = logarithm(lies.end_turn @ (other @ group.turn[:, None]).mT @ frame)
+    gap = np.concatenate([lies.end - matvec(frame.mT, across) / length, twisted], axis=-1)
     answer = condense(slope, gap)
     wrench = pose.wrench[number] + answer.still[..., -6:]
     return FlexureState(frame, onset, across + onset, arm, weight, lies, slope, gap, answer, wrench)
@@ -142,7 +142,7 @@ def end_motion(law: FlexureLaw, bent: FlexureState) -> Array:
 
     The relative motion is in the start frame, with the translation divided by the flexure length.
     """
-    back = _transpose(bent.frame)
+    back = bent.frame.mT
     none, eye = np.zeros_like(back), np.broadcast_to(np.eye(3), back.shape)
     place = back @ np.concatenate([-eye, cross_matrix(bent.lever), eye, -cross_matrix(bent.arm)], axis=-1)
     turn = np.concatenate([none, -back, none, back], axis=-1)
@@ -152,7 +152,7 @@ def end_motion(law: FlexureLaw, bent: FlexureState) -> Array:
 def weight_motion(bent: FlexureState) -> Array:
     """Compute the change of the weight (l, b, 3, 12) in the start frame per rotation of the first body."""
     assert bent.weight is not None  # noqa: S101  (asked for only where there is weight)
-    back = _transpose(bent.frame)
+    back = bent.frame.mT
     result = np.zeros((*back.shape[:-1], 12))
     result[..., 3:6] = cross_matrix(bent.weight) @ back
     return result
@@ -161,8 +161,8 @@ def weight_motion(bent: FlexureState) -> Array:
 def geometric(law: FlexureLaw, bent: FlexureState, force: Array, moment: Array) -> Array:
     """Compute the stiffness (l, b, 12, 12) that results from rotation of the arms under the end forces (docs/nonlinear.md, 18)."""
     scale = (law.rigidity / law.length)[:, None, None]
-    force_hat = cross_matrix(_rotate(bent.frame, force) * scale / law.length[:, None, None])
-    moment_hat = cross_matrix(_rotate(bent.frame, moment) * scale)
+    force_hat = cross_matrix(matvec(bent.frame, force) * scale / law.length[:, None, None])
+    moment_hat = cross_matrix(matvec(bent.frame, moment) * scale)
     lever, arm, none = cross_matrix(bent.lever), cross_matrix(bent.arm), np.zeros_like(force_hat)
     result = np.block(
         [
@@ -183,8 +183,8 @@ def _weight_of(law: FlexureLaw, bent: FlexureState) -> tuple[Array, Array]:
     assert bent.weight is not None  # noqa: S101
     rule = bent.lies.rule
     mean = np.einsum("n,lbnc->lbc", rule.weights * (1.0 - rule.points), bent.lies.rate)
-    weight = _rotate(bent.frame, bent.weight) * (law.rigidity / law.length**2)[:, None, None]
-    return weight, bent.onset + law.length[:, None, None] * _rotate(bent.frame, mean)
+    weight = matvec(bent.frame, bent.weight) * (law.rigidity / law.length**2)[:, None, None]
+    return weight, bent.onset + law.length[:, None, None] * matvec(bent.frame, mean)
 
 
 def _flexure_terms(law: FlexureLaw, bent: FlexureState) -> tuple[Array, Array]:
@@ -193,10 +193,10 @@ def _flexure_terms(law: FlexureLaw, bent: FlexureState) -> tuple[Array, Array]:
     motion = end_motion(law, bent)
     unit = (law.rigidity / law.length)[:, None, None]
     wrench = bent.wrench
-    residual = (_transpose(motion) @ (unit * wrench)[..., None])[..., 0]
+    residual = matvec(motion.mT, unit * wrench)
     moved = bent.answer.moved
     whole = moved[..., count:, :6] @ motion
-    result = _transpose(motion) @ (unit[..., None] * whole)
+    result = motion.mT @ (unit[..., None] * whole)
     if bent.weight is not None:
         residual, result = _add_weight(law, bent, motion, residual, result)
     return residual, result + geometric(law, bent, wrench[..., :3], wrench[..., 3:])
@@ -215,7 +215,7 @@ def _add_weight(law: FlexureLaw, bent: FlexureState, motion: Array, residual: Ar
         + element.swayed[..., 0, :, :] @ down[..., count : count + 3, :]
         + element.swayed[..., 1, :, :] @ sway
     )
-    stiffness = stiffness + unit * (_transpose(motion) @ (moved[..., count:, 6:] @ sway) - _transpose(sway) @ mean)
+    stiffness = stiffness + unit * (motion.mT @ (moved[..., count:, 6:] @ sway) - sway.mT @ mean)
     weight, hanging = _weight_of(law, bent)
     residual = residual.copy()
     residual[..., :3] -= weight
@@ -263,7 +263,7 @@ def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
 def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -> None:
     """Add constant-direction forces at points of bodies, and constant couples (docs/nonlinear.md, 19)."""
     dead = model.constant_wrenches(loads)
-    arms = _rotate(pose.turn[:, model.places.body], model.places.arm)
+    arms = matvec(pose.turn[:, model.places.body], model.places.arm)
     moment = cross(arms, dead[..., :3]) + dead[..., 3:]
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
     start = 6 * model.places.body
@@ -356,17 +356,9 @@ def flexure_weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
     if not np.any(loads.gravity):
         return None
     density = law.line_mass * law.length**3 / law.rigidity
-    return density[:, None, None] * _rotate(_transpose(frame), loads.gravity)
+    return density[:, None, None] * matvec(frame.mT, loads.gravity)
 
 
 def _gather(array: Array, bodies: Array) -> Array:
     """Gather (b, n, ...) of bodies (l,) to (l, b, ...)."""
     return np.moveaxis(array[:, bodies], 1, 0)
-
-
-def _rotate(turn: Array, vector: Array) -> Array:
-    return (turn @ np.broadcast_to(vector, turn.shape[:-1])[..., None])[..., 0]
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.beams.compliance import viscous_damping
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.mass import mass
@@ -166,7 +166,7 @@ def _assembled(
         stiffness[element.name], remainder = _strained(state, order, element)
         bending += remainder
     bending[:, : model.freedoms, : model.freedoms] += _turning(model, state)
-    stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + np.swapaxes(bending, -1, -2)))
+    stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + bending.mT))
     inertia, carriers = _inertia(state, order, joins, links)
     force, output, feedthrough = _channels(state, order, rows, joins)
     basis, kept = _free(_locked(state, order, rows, locked), order)
@@ -183,14 +183,14 @@ def _assembled(
             stiffness={name: Contribution(known * (item.operator @ basis), item.law, item.loss_factor) for name, item in stiffness.items()},
             inertia={name: Contribution(item.operator @ basis, item.law) for name, item in inertia.items()},
             inputs=model.inputs,
-            force=np.swapaxes(basis, -1, -2) @ force,
+            force=basis.mT @ force,
             imposed=imposed,
             outputs=output_channels(assembly),
             output=output @ basis,
             feedthrough=feedthrough,
             rigid=rigid[:, list(kept)],
             rigid_output=np.where(absolute(assembly)[:, None], output @ rigid, 0.0),
-            base_inertia=np.swapaxes(basis, -1, -2) @ carried,
+            base_inertia=basis.mT @ carried,
             damping=model.damping,
             idle=(),
             provenance=f"about a state of the {model.provenance}",
@@ -227,17 +227,17 @@ def _flexures(group: Flexures, bent: FlexureState) -> dict[str, _Linear]:
     law, element, inside = group.law, bent.tangent, _inner_response(group, bent)
     amplitudes, swayed = inside.amplitudes, inside.swayed
     unit = (law.rigidity / law.length)[:, None, None, None]
-    elastic = _transpose(amplitudes) @ (law.form[:, None] @ amplitudes) + _transpose(inside.gap) @ inside.hung
-    remainder = _transpose(amplitudes) @ ((element.hessian - law.form[:, None]) @ amplitudes)
+    elastic = amplitudes.mT @ (law.form[:, None] @ amplitudes) + inside.gap.mT @ inside.hung
+    remainder = amplitudes.mT @ ((element.hessian - law.form[:, None]) @ amplitudes)
     if element.hung is not None and element.swayed is not None:
-        mixed = _transpose(swayed) @ (element.hung @ amplitudes)
-        remainder = remainder - mixed - _transpose(mixed) - _transpose(swayed) @ (element.swayed[..., 1, :, :] @ swayed)
+        mixed = swayed.mT @ (element.hung @ amplitudes)
+        remainder = remainder - mixed - mixed.mT - swayed.mT @ (element.swayed[..., 1, :, :] @ swayed)
     turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])
     remainder = unit * remainder
     remainder[..., :12, :12] += turned
     masses = _mass(group, bent, inside)
     return {
-        name: _Linear(unit[place] * elastic[place], 0.5 * (remainder[place] + _transpose(remainder[place])), masses[place])
+        name: _Linear(unit[place] * elastic[place], 0.5 * (remainder[place] + remainder[place].mT), masses[place])
         for place, name in enumerate(group.names)
     }
 
@@ -247,14 +247,14 @@ def _follow_statically(item: _Linear, bent: FlexureState, law: FlexureLaw, place
     whole = item.elastic + item.geometric
     follow = -np.linalg.solve(whole[..., 12:, 12:], whole[..., 12:, :12])
     basis = np.concatenate([np.broadcast_to(np.eye(12), (*follow.shape[:-2], 12, 12)), follow], axis=-2)
-    condensed = _transpose(basis) @ whole @ basis
+    condensed = basis.mT @ whole @ basis
     turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])[place]
     length = law.length[place]
     back = transport(np.array([-0.5 * length, 0.0, 0.0]))  # from the end to the middle
     rows = back @ (np.repeat([length, 1.0], 3)[:, None] * end_motion(law, bent)[place])
     second = np.linalg.inv(rows[..., 6:])
-    elastic = _transpose(second) @ (condensed - 0.5 * (turned + _transpose(turned)))[..., 6:, 6:] @ second
-    return _Linear(elastic, condensed - _transpose(rows) @ elastic @ rows, _transpose(basis) @ item.mass @ basis, rows)
+    elastic = second.mT @ (condensed - 0.5 * (turned + turned.mT))[..., 6:, 6:] @ second
+    return _Linear(elastic, condensed - rows.mT @ elastic @ rows, basis.mT @ item.mass @ basis, rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,18 +283,18 @@ def _inner_response(group: Flexures, bent: FlexureState) -> _InnerResponse:
 
 def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array]:
     """Amplitudes that rotate the end with its body (..., q, 12), and amplitudes (..., q, q - 3) without rotation, scaled by stiffness."""
-    root = 1.0 / np.sqrt(np.diagonal(form, axis1=-2, axis2=-1))
+    root = 1.0 / np.sqrt(np.linalg.diagonal(form))
     scaled = turning * root[..., None, :]
-    follow = root[..., None] * (_transpose(scaled) @ np.linalg.solve(scaled @ _transpose(scaled), turned))
+    follow = root[..., None] * (scaled.mT @ np.linalg.solve(scaled @ scaled.mT, turned))
     _, _, vectors = np.linalg.svd(scaled)
-    return follow, root[..., None] * _transpose(vectors[..., 3:, :])
+    return follow, root[..., None] * vectors[..., 3:, :].mT
 
 
 def _mass(group: Flexures, bent: FlexureState, inside: _InnerResponse) -> Array:
     """Mass (l, b, 12 + m, 12 + m) of flexures: every point moves with the start, and by bending and stretch amplitudes."""
     law, lies = group.law, bent.lies
     place, turn = _points(group, bent, inside)
-    local = _transpose(lies.turn) @ (_transpose(bent.frame[..., None, :, :]) @ turn)
+    local = lies.turn.mT @ (bent.frame[..., None, :, :].mT @ turn)
     weights = law.length[:, None, None] * lies.rule.weights
     along, about = (weights[..., None] * law.inertia[:, None, :, part] for part in (slice(0, 1), slice(1, 4)))
     moved = np.einsum("lbnci,lbncj->lbij", place, along[..., None] * place)
@@ -318,7 +318,7 @@ def _points(group: Flexures, bent: FlexureState, inside: _InnerResponse) -> tupl
 
 def _arms(group: Flexures, bent: FlexureState) -> Array:
     """Arms (l, b, n, 3) from the first body references to the points of flexures."""
-    reach = group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
+    reach = group.law.length[:, None, None, None] * matvec(bent.frame[..., None, :, :], bent.lies.place)
     return bent.onset[..., None, :] + reach
 
 
@@ -384,7 +384,7 @@ def _hinges(state: State) -> tuple[Array, Array]:
     held = np.zeros((len(hinges.names), cases, 6))
     held[links, :, freedoms] = state.pose.held[:, : len(links)].T
     _, own, _, rows = stiffen(hinges, hinge_ends(model, state.pose), state.loads.inputs, state.loads.constant, held)
-    return rows, own - _transpose(rows) @ hinges.stiffness[:, None] @ rows
+    return rows, own - rows.mT @ hinges.stiffness[:, None] @ rows
 
 
 def _turning(model: Nonlinear, state: State) -> Array:
@@ -392,7 +392,7 @@ def _turning(model: Nonlinear, state: State) -> Array:
     cases = len(state.pose.position)
     result = np.zeros((cases, model.freedoms + 6, model.freedoms + 6))
     dead = model.constant_wrenches(state.loads)
-    arms = (state.pose.turn[:, model.places.body] @ model.places.arm[..., None])[..., 0]
+    arms = matvec(state.pose.turn[:, model.places.body], model.places.arm)
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
     for place, number in enumerate(model.places.body):
         part = slice(6 * number + 3, 6 * number + 6)
@@ -423,7 +423,7 @@ def _inertia(
     for name, matrix in model.inertia.items():
         number = model.body(name)
         turn = spatial_rotation(pose.turn[:, number])
-        inertia[name] = Contribution(order.body(number), turn @ matrix @ _transpose(turn))
+        inertia[name] = Contribution(order.body(number), turn @ matrix @ turn.mT)
         carriers[name] = transport(pose.position[:, number] - centre)
     for name, item in links.items():
         carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
@@ -458,7 +458,7 @@ def _strained(state: State, order: _Coordinates, element: Corotated) -> tuple[Co
     law, operator = np.zeros((strained + modes,) * 2), np.zeros((len(rows), strained + modes, ports + modes))
     law[:strained, :strained], law[strained:, strained:] = element.stiffness, np.diag(element.squares)
     operator[:, :strained, :ports], operator[:, strained:, ports:] = rows, np.eye(modes)
-    remainder = select[:ports].T @ (whole - _transpose(rows) @ element.stiffness @ rows) @ select[:ports]
+    remainder = select[:ports].T @ (whole - rows.mT @ element.stiffness @ rows) @ select[:ports]
     return Contribution(operator @ select, law, element.loss), remainder
 
 
@@ -471,7 +471,7 @@ def _port_twists(state: State, element: Corotated) -> Array:
     for port in range(count):
         own = slice(6 * port, 6 * port + 6)
         axes = spatial_rotation(turn[:, port] @ element.axes[port])
-        result[:, own, own] = _transpose(axes) @ transport((turn[:, port] @ element.arm[port][..., None])[..., 0])
+        result[:, own, own] = axes.mT @ transport(matvec(turn[:, port], element.arm[port]))
     return result
 
 
@@ -482,7 +482,7 @@ def _hinge_twists(state: State, place: int) -> tuple[Array, Array]:
     for bodies, arms in ((hinges.first, hinges.arm_first), (hinges.second, hinges.arm_second)):
         turn = pose.turn[:, bodies[place]]
         arm = turn @ arms[place]
-        twists.append(_transpose(spatial_rotation(turn @ hinges.turn[place])) @ transport(arm))
+        twists.append(spatial_rotation(turn @ hinges.turn[place]).mT @ transport(arm))
     return twists[0], twists[1]
 
 
@@ -496,9 +496,9 @@ def _channels(state: State, order: _Coordinates, rows: Array, joins: Mapping[str
     force = np.zeros((cases, order.size, inputs))
     start = inputs - 6 * len(wrench_places(assembly))
     for place, twist in enumerate(_moved_twists(state, order, wrench_places(assembly))):
-        force[:, :, start + 6 * place : start + 6 * place + 6] += _transpose(twist)
+        force[:, :, start + 6 * place : start + 6 * place + 6] += twist.mT
     for place, name in enumerate(model.hinges.names):
-        force += _transpose(rows[place] @ order.link(name, joins[name])) @ model.hinges.thrust[place]
+        force += (rows[place] @ order.link(name, joins[name])).mT @ model.hinges.thrust[place]
     output_rows = [*_moved_twists(state, order, twist_places(assembly)), *gauge_rows(assembly, motions)]
     passed = [np.zeros((row.shape[-2], inputs)) for row in output_rows]
     for name in wrench_owners(assembly):
@@ -572,7 +572,3 @@ def _viscous(model: Nonlinear) -> dict[str, Array]:
     dampers = {name: viscous_damping(model.assembly.links[name].part) for name in model.hinges.names}
     dampers |= {each.name: each.damping for each in model.elements}
     return {name: damping for name, damping in dampers.items() if damping is not None}
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.models.nonlinear.elements.condense import system
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.graph import FlexureState, assemble, follow
@@ -57,11 +57,9 @@ def _lines(state: State) -> Iterator[tuple[str, Line]]:
         shares = np.concatenate([[0.0], bent.lies.rule.points, [1.0]])
         start = np.moveaxis(state.pose.position[:, group.first], 1, 0) + bent.onset
         end = start - bent.onset + bent.lever
-        inner = (
-            start[..., None, :] + group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
-        )
+        inner = start[..., None, :] + group.law.length[:, None, None, None] * matvec(bent.frame[..., None, :, :], bent.lies.place)
         place = np.concatenate([start[..., None, :], inner, end[..., None, :]], axis=-2)
-        drawn = np.swapaxes(group.turn, -1, -2)[:, None, None]
+        drawn = group.turn.mT[:, None, None]
         turned = bent.frame[..., None, :, :] @ bent.lies.turn @ drawn
         ends = (np.moveaxis(state.pose.turn[:, each], 1, 0)[..., None, :, :] for each in (group.first, group.second))
         first, second = ends

@@ -278,7 +278,7 @@ def lack(model: Nonlinear, system: System) -> Array:
     """Return the largest residual (b,): gaps at flexure ends, scaled residuals of amplitudes, and residuals of locked and fixed DOFs."""
     largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
-        stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]
+        stiff = np.max(np.linalg.diagonal(group.law.form), axis=-1)[:, None]
         largest += [np.max(np.abs(bent.gap), axis=(0, 2)), np.max(np.max(np.abs(bent.tangent.gradient), axis=-1) / stiff, axis=0)]
     held = system.residual[:, model.freedoms :]
     return np.max(np.stack([*largest, np.max(np.abs(held), axis=1, initial=0.0)]), axis=0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
@@ -19,7 +19,7 @@ from flexstage.beams.flexure.law import DEFAULT, FlexureLaw, Resolution
 from flexstage.beams.flexure.of_part import flexure_law
 from flexstage.beams.geometric import foreshortening
 from flexstage.beams.mass import mass
-from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, by_part, expand
 from flexstage.mechanism.assembly.expansion import expansion, ground_of
 from flexstage.mechanism.assembly.incidence import layout
 from flexstage.mechanism.assembly.moving_mass import carried_masses, moving_inertia
@@ -176,7 +176,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     assembly = expand(mechanism)
     bodies = layout(assembly).bodies
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])
-    laws = _laws(assembly, resolution)
+    laws = by_part(assembly.links, partial(flexure_law, resolution=resolution))
     number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
     growth = _growth(mechanism, assembly, bodies, temperature, ground)
     drawn = _NominalBodies(number, reference, growth)
@@ -201,18 +201,6 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
         growth=growth.bodies,
         provenance=f"nonlinear model of {digest(mechanism, physics=True)[:16]}" + (f" at {temperature:+g} K" if temperature else ""),
     )
-
-
-def _laws(assembly: Assembly, resolution: Resolution) -> dict[str, FlexureLaw | None]:
-    """The law of each link, computed once per part."""
-    known: dict[tuple[int, int], FlexureLaw | None] = {}
-    result = {}
-    for name, link in assembly.links.items():
-        key = id(link.part), id(link.material)
-        if key not in known:
-            known[key] = flexure_law(link.part, link.material, resolution)
-        result[name] = known[key]
-    return result
 
 
 def _growth(mechanism: Mechanism, assembly: Assembly, bodies: tuple[str, ...], change: float, ground: str | None) -> _Growth:

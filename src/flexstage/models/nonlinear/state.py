@@ -65,6 +65,10 @@ class Loads:
         """Return the loads of some cases."""
         return Loads(self.inputs[cases], self.gravity[cases], self.constant[cases])
 
+    def plus(self, other: Loads, factor: float) -> Loads:
+        """Return the sum with `factor` times other loads."""
+        return Loads(self.inputs + factor * other.inputs, self.gravity + factor * other.gravity, self.constant + factor * other.constant)
+
     def times(self, share: Array) -> Loads:
         """Return the loads with each case multiplied by a fraction (b,)."""
         return Loads(self.inputs * share[:, None], self.gravity * share[:, None], self.constant * share)

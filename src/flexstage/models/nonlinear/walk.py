@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexstage.base.number import Array
+from flexstage.base.number import matvec
 from flexstage.base.session import SESSION
 from flexstage.models.nonlinear.elements.element import shape
 from flexstage.models.nonlinear.graph import flexure_weight
@@ -70,13 +70,9 @@ def walk_tree(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:
         one, other, own = group.first[link], group.second[link], group.turn[link]
         along, across = ends[step.group][link], own @ turns[step.group][link] @ own.T
         near, far = (one, other) if step.start else (other, one)
-        turn[:, far] = turn[:, near] @ (across if step.start else np.swapaxes(across, -1, -2))
-        reach = _turned(turn[:, one], group.arm_first[link] + along @ own.T) - _turned(turn[:, other], group.arm_second[link])
+        turn[:, far] = turn[:, near] @ (across if step.start else across.mT)
+        reach = matvec(turn[:, one], group.arm_first[link] + along @ own.T) - matvec(turn[:, other], group.arm_second[link])
         moved = rounded[:, near] + (reach if step.start else -reach)
         position[:, far] = position[:, near] + moved
         rounded[:, far] = moved - (position[:, far] - position[:, near])
     return replace(pose, position=position, turn=turn)
-
-
-def _turned(turn: Array, vector: Array) -> Array:
-    return (turn @ np.broadcast_to(vector, turn.shape[:-1])[..., None])[..., 0]

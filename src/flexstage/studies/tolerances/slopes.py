@@ -89,7 +89,7 @@ def _derivatives(study: Tolerance, step: Array, modes: dict[int, tuple[float, Ei
             found[row] = np.imag(np.broadcast_to(value, len(step))) / _STEP
     for row, (value, group) in modes.items():
         change = project(bench.model.stiffness, group.shapes) - group.values.mean() * project(bench.model.inertia, group.shapes)
-        mean = np.trace(change, axis1=-2, axis2=-1) / len(group.values)
+        mean = np.linalg.trace(change) / len(group.values)
         found[row] = mean / (8.0 * np.pi**2 * value)
     return found
 

@@ -182,7 +182,7 @@ def summary(study: Tolerance, results: Results, slope: Slopes) -> Summary:
     values = results.responses[results.designs < study.copies]
     sound = np.all(np.isfinite(values), axis=1)
     lines = tuple(_line(study, values, slope, number) for number in range(len(study.lines)))
-    passed = [_keeps(line.requirement, values[:, _column(study, line.column)]) for line in lines]
+    passed = [Verdict(line.requirement, values[:, _column(study, line.column)]).passed for line in lines]
     return Summary(
         copies=len(values),
         failed=int(np.sum(~sound)),
@@ -212,11 +212,7 @@ def _column(study: Tolerance, name: str) -> int:
 def _line(study: Tolerance, values: Array, slope: Slopes, number: int) -> Line:
     name, requirement = study.lines[number]
     column = _column(study, name)
-    return Line(requirement, name, float(slope.values[column]), binomial(_keeps(requirement, values[:, column])))
-
-
-def _keeps(requirement: Requirement, values: Array) -> Array:
-    return Verdict(requirement, values).passed
+    return Line(requirement, name, float(slope.values[column]), binomial(Verdict(requirement, values[:, column]).passed))
 
 
 def _spread(study: Tolerance, results: Results, slope: Slopes, values: Array) -> Spread:

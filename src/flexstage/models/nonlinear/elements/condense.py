@@ -29,7 +29,7 @@ def system(tangent: Tangent) -> Array:
     result = np.zeros((*tangent.hessian.shape[:-2], size + 6, size + 6))
     result[..., :size, :size] = tangent.hessian
     rows = np.concatenate([tangent.reach, tangent.turning], axis=-2)
-    result[..., :size, size:] = -np.swapaxes(rows, -1, -2)
+    result[..., :size, size:] = -rows.mT
     result[..., size:, :size] = rows
     result[..., size : size + 3, size : size + 3] = tangent.soft
     return result
@@ -46,7 +46,7 @@ def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
     right[..., :size, 0], right[..., size:, 0] = -tangent.gradient, -gap
     right[..., size:, 1:7] = np.eye(6)
     if tangent.hung is not None and tangent.swayed is not None:
-        right[..., :size, 7:] = np.swapaxes(tangent.hung, -1, -2)
+        right[..., :size, 7:] = tangent.hung.mT
         right[..., size : size + 3, 7:] = -tangent.swayed[..., 0, :, :]
     answer = solve(matrix, right)
     return FlexureResponse(answer[..., 0], answer[..., 1:])

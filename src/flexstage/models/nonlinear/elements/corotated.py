@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.spatial.frame import cross_matrix
 from flexstage.spatial.rotation import cross, exponential, logarithm, logarithm_rate
 
@@ -68,12 +68,12 @@ def port_motion(element: Corotated, position: Array, turn: Array) -> PortMotion:
     """Compute the port motions at positions (..., p, 3) and rotations (..., p, 3, 3) of their bodies."""
     count = len(element.bodies)
     frame = _mean(turn)
-    angle = logarithm(_transpose(frame)[..., None, :, :] @ turn)
-    arm = (turn @ element.arm[..., None])[..., 0]
+    angle = logarithm(frame.mT[..., None, :, :] @ turn)
+    arm = matvec(turn, element.arm)
     place = position + arm
     middle = np.mean(place, axis=-2, keepdims=True)
-    shift = (_transpose(frame)[..., None, :, :] @ (place - middle)[..., None])[..., 0] - (element.place - np.mean(element.place, axis=0))
-    rate = logarithm_rate(angle) @ _transpose(frame)[..., None, :, :]
+    shift = matvec(frame.mT[..., None, :, :], place - middle) - (element.place - np.mean(element.place, axis=0))
+    rate = logarithm_rate(angle) @ frame.mT[..., None, :, :]
     following = np.linalg.solve(np.sum(rate, axis=-3)[..., None, :, :], rate)
     wide = (*angle.shape[:-2], 3, 6 * count)
     turning, drift = np.zeros(wide, dtype=angle.dtype), np.zeros(wide, dtype=angle.dtype)
@@ -86,7 +86,7 @@ def port_motion(element: Corotated, position: Array, turn: Array) -> PortMotion:
         spun[..., port, :, start + 3 : start + 6] = np.eye(3)
         turning[..., start + 3 : start + 6] = following[..., port, :, :]
     drift = np.mean(own, axis=-3)
-    back = _transpose(frame)[..., None, :, :]
+    back = frame.mT[..., None, :, :]
     shifted = back @ (own - drift[..., None, :, :] + cross_matrix(place - middle) @ turning[..., None, :, :])
     turned = rate @ (spun - turning[..., None, :, :])
     motion = np.concatenate([shift, angle], axis=-1)
@@ -98,17 +98,15 @@ def port_motion(element: Corotated, position: Array, turn: Array) -> PortMotion:
 def resist(element: Corotated, position: Array, turn: Array, gravity: Array) -> Array:
     """Compute the internal forces (..., 6 p) on the port bodies, minus the element's weight under `gravity` (..., 3) [m/s^2]."""
     ports = port_motion(element, position, turn)
-    strain = (element.relative @ ports.motion[..., None])[..., 0]
+    strain = matvec(element.relative, ports.motion)
     force = (element.relative.T @ (element.stiffness @ strain[..., None]))[..., 0]
-    pulled = (_transpose(ports.frame) @ gravity[..., None])[..., 0]
-    force = force - (element.share @ pulled[..., None])[..., 0]
+    pulled = matvec(ports.frame.mT, gravity)
+    force = force - matvec(element.share, pulled)
     hanging = element.mass * (element.centre - np.mean(element.place, axis=0)) + (ports.motion @ element.share)
-    lever = (ports.frame @ hanging[..., None])[..., 0]
+    lever = matvec(ports.frame, hanging)
     weight = element.mass * gravity
-    own = (_transpose(ports.rows) @ force[..., None])[..., 0]
-    return (
-        own - (_transpose(ports.drift) @ weight[..., None])[..., 0] - (_transpose(ports.turning) @ cross(lever, gravity)[..., None])[..., 0]
-    )
+    own = matvec(ports.rows.mT, force)
+    return own - matvec(ports.drift.mT, weight) - matvec(ports.turning.mT, cross(lever, gravity))
 
 
 def stiffen_ports(element: Corotated, position: Array, turn: Array, gravity: Array) -> tuple[Array, Array]:
@@ -123,10 +121,6 @@ def _mean(turn: Array) -> Array:
     """The mean (..., 3, 3) of rotations (..., p, 3, 3) by H. Karcher's definition, iterated from the first."""
     mean = turn[..., 0, :, :]
     for _ in range(_TURNS):
-        away = np.mean(logarithm(_transpose(mean)[..., None, :, :] @ turn), axis=-2)
+        away = np.mean(logarithm(mean.mT[..., None, :, :] @ turn), axis=-2)
         mean = mean @ exponential(away)
     return mean
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

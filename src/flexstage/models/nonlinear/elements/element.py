@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import Rule, gauss
 from flexstage.spatial.frame import cross_matrix
@@ -72,8 +72,8 @@ def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = N
     stretched = compliance * local
     twist = curvature[..., 0]
     stretched[..., 0] += 1.0 - 0.5 * law.trapeze[..., None, None] * twist * twist
-    rate = (turn @ stretched[..., None])[..., 0]
-    soft = (turn * compliance[..., None, :]) @ np.swapaxes(turn, -1, -2)
+    rate = matvec(turn, stretched)
+    soft = (turn * compliance[..., None, :]) @ turn.mT
     plate = _apply(law.plate, strain[..., count:])
     end = rule.weights @ rate
     return Shape(rule, curvature, plate, turn, end_turn, rate, rule.running @ rate, end, soft, local[..., 0], force, weight)
@@ -163,14 +163,14 @@ def energy(law: FlexureLaw, strain: Array, config: Shape) -> Array:
     stretch = law.stretch[..., None, None, :]
     density = stretch[..., 0] * gauss_two * gauss_two + stretch[..., 1] * gauss_four * gauss_four
     forces = _forces(config.rule, config.force, config.weight)
-    density = density + np.sum(forces * (config.soft @ forces[..., None])[..., 0], axis=-1)
+    density = density + np.sum(forces * matvec(config.soft, forces), axis=-1)
     return quadratic + 0.5 * density @ config.rule.weights
 
 
 def _apply(table: Array, amplitudes: Array) -> Array:
     """Values (..., b, n, c) of a table (..., n, c, k) at amplitudes (..., b, k)."""
     rows = table.reshape(*table.shape[:-3], table.shape[-3] * table.shape[-2], table.shape[-1])
-    return (amplitudes @ np.swapaxes(rows, -1, -2)).reshape(*amplitudes.shape[:-1], *table.shape[-3:-1])
+    return (amplitudes @ rows.mT).reshape(*amplitudes.shape[:-1], *table.shape[-3:-1])
 
 
 def _turns(rule: Rule, inner: Array) -> tuple[Array, Array]:
@@ -198,7 +198,7 @@ def _lever(config: Shape, forces: Array) -> Array:
 
 
 def _local(turn: Array, vectors: Array) -> Array:
-    return (np.swapaxes(turn, -1, -2) @ vectors[..., None])[..., 0]
+    return matvec(turn.mT, vectors)
 
 
 def _product(one: Array, other: Array) -> Array:
@@ -206,7 +206,7 @@ def _product(one: Array, other: Array) -> Array:
     shape = np.broadcast_shapes(one.shape[:-3], other.shape[:-3])
     left = one.reshape(*one.shape[:-3], -1, one.shape[-1])
     right = other.reshape(*other.shape[:-3], -1, other.shape[-1])
-    return (np.swapaxes(left, -1, -2) @ right).reshape(*shape, left.shape[-1], right.shape[-1])
+    return (left.mT @ right).reshape(*shape, left.shape[-1], right.shape[-1])
 
 
 def _project(table: Array, values: Array) -> Array:

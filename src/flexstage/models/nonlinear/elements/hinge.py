@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array
+from flexstage.base.number import Array, matvec
 from flexstage.spatial.frame import cross_matrix
 from flexstage.spatial.rotation import cross, exponential, exponential_rate, logarithm, logarithm_rate
 
@@ -64,12 +64,12 @@ def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
     """Compute deformations (..., l, b, 6), and derivatives (..., l, b, 6, 12) with respect to the motions of both bodies."""
     turn = _by_case(hinges.turn, 2)
     frame, other = ends.first_turn @ turn, ends.second_turn @ turn
-    arm = (ends.first_turn @ _by_case(hinges.arm_first, 1)[..., None])[..., 0]
-    other_arm = (ends.second_turn @ _by_case(hinges.arm_second, 1)[..., None])[..., 0]
+    arm = matvec(ends.first_turn, _by_case(hinges.arm_first, 1))
+    other_arm = matvec(ends.second_turn, _by_case(hinges.arm_second, 1))
     gap = ends.second + other_arm - ends.first - arm
-    angle = logarithm(_transpose(frame) @ other)
-    back = _transpose(frame @ exponential(0.5 * angle))
-    turning = logarithm_rate(angle) @ _transpose(frame)
+    angle = logarithm(frame.mT @ other)
+    back = (frame @ exponential(0.5 * angle)).mT
+    turning = logarithm_rate(angle) @ frame.mT
     half = 0.5 * frame @ exponential_rate(0.5 * angle) @ turning
     lever = cross_matrix(gap)
     eye = np.broadcast_to(np.eye(3), back.shape)
@@ -77,7 +77,7 @@ def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
     moved = back @ np.concatenate([-eye, cross_matrix(arm) + lever @ (eye - half), eye, lever @ half - cross_matrix(other_arm)], axis=-1)
     none = np.zeros_like(turning)
     turned = np.concatenate([none, -turning, none, turning], axis=-1)
-    strain = np.concatenate([(back @ gap[..., None])[..., 0], angle], axis=-1)
+    strain = np.concatenate([matvec(back, gap), angle], axis=-1)
     rows = np.concatenate([moved, turned], axis=-2)
     struts = np.flatnonzero(np.any(_by_case(hinges.strut, 0), axis=1))
     if len(struts):
@@ -93,7 +93,7 @@ def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
     if len(bowed):
         own = _of(strain, bowed)
         slope = (bow[bowed] @ own[..., None, :, None])[..., 0]
-        strain[..., bowed, :, :] = own + 0.5 * (slope @ own[..., None])[..., 0]
+        strain[..., bowed, :, :] = own + 0.5 * matvec(slope, own)
         rows[..., bowed, :, :, :] += slope @ rows[..., bowed, :, :, :]
     return strain, rows
 
@@ -106,7 +106,7 @@ def _of(values: Array, links: Array) -> Array:
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
     """Compute link wrenches (..., l, b, 6): elastic, minus those of inputs (b, m) and preloads, plus reactions `held` of locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
-    return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
+    return matvec(_by_case(hinges.stiffness, 2), deformation - imposed(hinges, inputs)) - own + held
 
 
 def imposed(hinges: Hinges, inputs: Array) -> Array:
@@ -115,7 +115,7 @@ def imposed(hinges: Hinges, inputs: Array) -> Array:
 
 
 def _by_input(table: Array, inputs: Array) -> Array:
-    return (_by_case(table, 2) @ inputs[..., None])[..., 0]
+    return matvec(_by_case(table, 2), inputs)
 
 
 def _by_case(table: Array, axes: int) -> Array:
@@ -133,7 +133,7 @@ def stiffen(hinges: Hinges, ends: Ends, inputs: Array, pushing: Array, held: Arr
 
 
 def _work(rows: Array, wrench: Array) -> Array:
-    return (_transpose(rows) @ wrench[..., None])[..., 0]
+    return matvec(rows.mT, wrench)
 
 
 def _nudge(ends: Ends) -> Ends:
@@ -145,7 +145,3 @@ def _nudge(ends: Ends) -> Ends:
         ends.second + step[..., 6:9],
         exponential(step[..., 9:]) @ ends.second_turn,
     )
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

@@ -10,10 +10,10 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.elements.fixed_coordinates import FixedCoordinates
 from flexstage.models.nonlinear.graph import System, advance, assemble, exerted_by
-from flexstage.models.nonlinear.newton import RESULT_FIELDS, EquilibriumSolution, lack, search
+from flexstage.models.nonlinear.newton import EquilibriumSolution, lack, merge, search
 from flexstage.models.nonlinear.paths.inertia import count_descents, lowest_stiffness, stiffness_scale, weakest_flexure
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status, put
+from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.models.nonlinear.walk import walk_tree
 from flexstage.spatial.rotation import logarithm
 
@@ -58,8 +58,7 @@ class ProportionalLoading:
 
     def at(self, factor: float) -> tuple[Loads, FixedCoordinates]:
         """Return loads and fixed coordinates at a load factor."""
-        loads = Loads(*(getattr(self.loads, name) + factor * getattr(self.gain, name) for name in ("inputs", "gravity", "constant")))
-        return loads, replace(self.hold, value=self.hold.value + factor * self.moved)
+        return self.loads.plus(self.gain, factor), replace(self.hold, value=self.hold.value + factor * self.moved)
 
     @property
     def plain(self) -> bool:
@@ -269,8 +268,7 @@ def complete_paths(
     for case in partly if options.arcs else ():
         one = np.array([case])
         after = _completed_path(model, loads.of(one), hold.of(one), solution.of(one), options)
-        fields = (put(getattr(solution, name), one, getattr(after, name)) for name in RESULT_FIELDS)
-        solution = EquilibriumSolution(solution.pose.put(one, after.pose), *fields)
+        solution = merge(solution, one, after)
     return solution
 
 

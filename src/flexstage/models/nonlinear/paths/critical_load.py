@@ -163,10 +163,11 @@ def proportional_loading(
     model = start.model
     rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
     gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], load.get(STATED, 0.0) * np.ones(1))
-    begun = Loads(*(getattr(start.loads, name) - factor * getattr(gain, name) for name in ("inputs", "gravity", "constant")))
     moved = np.array([[load.get(name, 0.0) for name in start.held]])
     kept = kept_rows(model, start.held, start.held if locked is None else locked)
-    return ProportionalLoading(model, begun, replace(start.hold, value=start.hold.value - factor * moved), gain, moved, options, kept)
+    return ProportionalLoading(
+        model, start.loads.plus(gain, -factor), replace(start.hold, value=start.hold.value - factor * moved), gain, moved, options, kept
+    )
 
 
 def state_at(loading: ProportionalLoading, point: Point, held: tuple[str, ...]) -> State:

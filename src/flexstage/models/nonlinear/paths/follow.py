@@ -14,7 +14,7 @@ from flexstage.base.number import Array
 from flexstage.models.nonlinear.newton import USUAL, EquilibriumSolution, Task, search
 from flexstage.models.nonlinear.paths.arc import Point, ProportionalLoading, first_point, march, misfit, point_at, step_along
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
+from flexstage.models.nonlinear.state import Pose, SolverOptions, Status
 from flexstage.spatial.rotation import logarithm
 
 FIRST = 1e-4
@@ -111,8 +111,9 @@ def continued(start: Task, end: Task) -> EquilibriumSolution:
     kept = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
     if pose_distance(model, start.start, end.start) < _SAME:
         return whole
-    gain = Loads(*(getattr(end.loads, name) - getattr(start.loads, name) for name in ("inputs", "gravity", "constant")))
-    loading = ProportionalLoading(model, start.loads, start.hold, gain, hold.value - start.hold.value, NEAR, kept)
+    loading = ProportionalLoading(
+        model, start.loads, start.hold, end.loads.plus(start.loads, -1.0), hold.value - start.hold.value, NEAR, kept
+    )
     begin = first_point(loading, start.start, 0.0)
     if begin.motions or not np.isfinite(begin.slope):
         return whole
@@ -143,7 +144,7 @@ def pose_distance(model: Nonlinear, one: Pose, other: Pose) -> float:
 
 def between(one: Pose, other: Pose) -> Array:
     """Return the body motions (n,) from one pose to another."""
-    motions = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
+    motions = np.concatenate([other.position - one.position, logarithm(other.turn @ one.turn.mT)], axis=-1)
     return np.append(motions[0, :-1], np.zeros(other.held.shape[1]))
 
 

@@ -77,7 +77,7 @@ def indefinite(tangent: Tangent) -> Array:
     """Build the symmetric form of a flexure's system of equations: the six rows for the motion of the end have reversed signs."""
     matrix = system(tangent)
     matrix[..., matrix.shape[-1] - 6 :, :] *= -1.0
-    return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    return 0.5 * (matrix + matrix.mT)
 
 
 def _descents(whole: System, kept: list[int], freedoms: int) -> Array:
@@ -95,6 +95,6 @@ def _negative(matrix: Array) -> Array:
 
 def _even(matrix: Array) -> Array:
     """Symmetric matrices (..., n, n) scaled by their largest row entries."""
-    even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    even = 0.5 * (matrix + matrix.mT)
     size = np.sqrt(np.maximum(np.max(np.abs(even), axis=-1), 1e-300))
     return np.nan_to_num(even / size[..., None] / size[..., None, :])
