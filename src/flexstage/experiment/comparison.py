@@ -360,6 +360,8 @@ def _residues(
     columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
     inputs = tuple(experiment.inputs[index].name for index in columns)
     shape = (len(matched), len(sensors), len(inputs))
+    if not matched or not inputs:
+        return Residues(tuple(sensors), inputs, *np.zeros((2, *shape)), *np.zeros((2, len(inputs)), dtype=bool))
     sizes = np.array([si_size(mechanism, experiment.inputs[index]) for index in columns])
     shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
     sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
