@@ -514,10 +514,22 @@ def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> I
         frame = _first(seen.frame)
         points = np.concatenate([piece.points for thing in things for piece in thing.pieces])
         side = float(np.max(np.ptp(points, axis=0)))
+        if any(_is_within(_BRACKET * side, frame.position, piece) for thing in things for piece in thing.pieces):
+            continue
         beside = min(distance(frame.position[None], piece.points) for thing in things for piece in thing.pieces)
         if beside > _BRACKET * side:
             axis = frame.position + (beside + 2.0 * side) * np.outer([-1.0, 1.0], frame.rotation[:, 0])
             yield _off_target(name, seen.body, beside, min(distance(axis, piece.points) for thing in things for piece in thing.pieces))
+
+
+def _is_within(reach: float, point: Array, piece: Convex) -> bool:
+    """Fast test: whether the nearest face of a piece contains the foot of the perpendicular within a distance."""
+    across, heights = piece.points @ piece.normals.T, piece.normals @ point
+    low, high = across.min(axis=0), across.max(axis=0)
+    beyond = heights - np.clip(heights, low, high)
+    face = int(np.argmax(np.abs(beyond)))
+    foot = piece.normals @ (point - beyond[face] * piece.normals[face])
+    return bool(abs(beyond[face]) <= reach and np.all((foot >= low - TOUCHING) & (foot <= high + TOUCHING)))
 
 
 def _off_target(name: str, body: str, beside: float, miss: float) -> Finding:
