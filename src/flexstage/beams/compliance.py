@@ -101,7 +101,7 @@ def law(part: Part, material: Material | None) -> Law:
     block = full[..., kept[:, None], kept]
     if len(freed) and len(kept):
         mixed = full[..., kept[:, None], freed]
-        block = block - mixed @ np.linalg.solve(_regular(part.part, full[..., freed[:, None], freed], freed), np.swapaxes(mixed, -1, -2))
+        block = block - mixed @ np.linalg.solve(_regular(part.part, full[..., freed[:, None], freed], freed), mixed.mT)
     result = np.zeros_like(full)
     result[..., kept[:, None], kept] = block
     return Law(result, locked_freedoms(part))

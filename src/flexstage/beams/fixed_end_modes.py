@@ -117,8 +117,8 @@ def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> 
         heavy |= {(2 + number, 2 + number): (shares * each, clamped.product(0, 0)) for number, each in enumerate(across.square)}
     blocks.append({(1, 1): (bending / half, slope)})
     squares, vectors = _modes(_matrix(blocks, fields, size), _matrix([heavy], fields, size), count)
-    deflection, rotation = (_transpose(vectors[..., field * size : (field + 1) * size, :]) @ plain.at(stations) for field in (0, 1))
-    return _signed(axis, squares, deflection, rotation, _transpose(vectors[..., :size, :]) @ plain.at(np.array([_FIRST_LOBE])))
+    deflection, rotation = (vectors[..., field * size : (field + 1) * size, :].mT @ plain.at(stations) for field in (0, 1))
+    return _signed(axis, squares, deflection, rotation, vectors[..., :size, :].mT @ plain.at(np.array([_FIRST_LOBE])))
 
 
 def fixed_end_twist(part: Torsion, count: int, stations: Array) -> FixedEndModes:
@@ -144,7 +144,7 @@ def fixed_end_twist(part: Torsion, count: int, stations: Array) -> FixedEndModes
         shares = 1.5 * _across(_ODD).square
         heavy += [{(number, number): (part.inertia * share * half, basis.product(0, 0))} for number, share in enumerate(shares) if number]
     squares, vectors = _modes(_matrix(stiff, fields, size), _matrix(heavy, fields, size), count)
-    first, moved = (_transpose(vectors[..., :size, :]) @ basis.at(places) for places in (np.array([_FIRST_LOBE]), stations))
+    first, moved = (vectors[..., :size, :].mT @ basis.at(places) for places in (np.array([_FIRST_LOBE]), stations))
     return _signed(3, squares, moved, None, first)
 
 
@@ -240,7 +240,7 @@ def _matrix(blocks: list[dict[tuple[int, int], tuple[Number, Array]]], fields: i
         rows, columns = slice(row * size, (row + 1) * size), slice(column * size, (column + 1) * size)
         result[..., rows, columns] += matrix
         if row != column:
-            result[..., columns, rows] += _transpose(matrix)
+            result[..., columns, rows] += matrix.mT
     return result
 
 
@@ -249,10 +249,10 @@ def _modes(stiffness: Array, inertia: Array, count: int) -> tuple[Array, Array]:
     scale = 1.0 / np.sqrt(np.real(np.diagonal(stiffness, axis1=-2, axis2=-1)))
     stiff, heavy = (matrix * scale[..., None] * scale[..., None, :] for matrix in np.broadcast_arrays(stiffness, inertia))
     lower = np.linalg.cholesky(np.real(stiff))
-    inner = np.linalg.solve(lower, _transpose(np.linalg.solve(lower, np.real(heavy))))
-    values, vectors = np.linalg.eigh(0.5 * (inner + _transpose(inner)))
+    inner = np.linalg.solve(lower, np.linalg.solve(lower, np.real(heavy)).mT)
+    values, vectors = np.linalg.eigh(0.5 * (inner + inner.mT))
     values = values[..., : -count - 1 : -1]
-    vectors = np.linalg.solve(_transpose(lower), vectors[..., ::-1][..., :count])
+    vectors = np.linalg.solve(lower.mT, vectors[..., ::-1][..., :count])
     if np.iscomplexobj(stiff) or np.iscomplexobj(heavy):
         values, vectors = _stepped(stiff, heavy, values, vectors)
     return 1.0 / values, scale[..., None] * vectors / np.sqrt(values)[..., None, :]
@@ -263,16 +263,12 @@ def _stepped(stiff: Array, heavy: Array, values: Array, vectors: Array) -> tuple
     steps, turns = [], []
     for number in range(values.shape[-1]):
         value, vector = values[..., number, None, None], vectors[..., number : number + 1]
-        row = _transpose(vector)
+        row = vector.mT
         lag = np.imag(heavy) - value * np.imag(stiff)
         step = row @ lag @ vector
         border = np.real(stiff) @ vector
-        system = np.block([[np.real(heavy) / value - np.real(stiff), border], [_transpose(border), np.zeros_like(value)]])
+        system = np.block([[np.real(heavy) / value - np.real(stiff), border], [border.mT, np.zeros_like(value)]])
         right = np.concatenate([-(lag @ vector) / value + step / value * border, -0.5 * row @ np.imag(stiff) @ vector], axis=-2)
         turns.append(np.linalg.solve(system, right)[..., :-1, 0])
         steps.append(step[..., 0, 0])
     return values + 1j * np.stack(steps, axis=-1), vectors + 1j * np.stack(turns, axis=-1)
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

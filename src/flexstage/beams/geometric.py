@@ -67,7 +67,7 @@ def foreshortening(part: Part, material: Material | None) -> Array:
     if not np.any(own.half):
         return np.zeros_like(result)
     both = np.einsum("ia,b->iab", np.eye(3), axis)  # end forces on the bodies at +-half
-    result[..., :3, 3:, 3:] -= own.half * (axis[:, None, None] * np.eye(3) - 0.5 * (both + np.swapaxes(both, -1, -2)))
+    result[..., :3, 3:, 3:] -= own.half * (axis[:, None, None] * np.eye(3) - 0.5 * (both + both.mT))
     result[..., 0, :] = result[..., :, 0] = 0.0
     return result
 
@@ -96,7 +96,7 @@ def _of_strut(length: Array) -> Geometric:
     shift = step + arm * lever
     turns = np.zeros(ENDS)
     turns[[4, 5, 10, 11]] = 1.0
-    axial = np.swapaxes(shift, -1, -2) @ shift / length[..., None, None] - arm * np.diag(turns)
+    axial = shift.mT @ shift / length[..., None, None] - arm * np.diag(turns)
     point = _of_point()
     others = np.broadcast_to(point.per_force[1:], (*length.shape, 5, ENDS, ENDS))
     return Geometric(np.concatenate([axial[..., None, :, :], others], axis=-3), point.inner, point.half)
@@ -130,7 +130,7 @@ def _sum(weight: Array, first: Array, second: Array) -> Array:
     """Sum over the stations of weights (..., s) times products of shapes (..., s, i, a) and (..., s, j, b): (..., i, j, a, b)."""
     weighed = weight[..., None, None] * first
     wide, across = (each.reshape(*each.shape[:-2], -1) for each in (weighed, second))
-    total = np.swapaxes(wide, -1, -2) @ across
+    total = wide.mT @ across
     return np.swapaxes(total.reshape(*total.shape[:-2], *first.shape[-2:], *second.shape[-2:]), -3, -2)
 
 
@@ -221,4 +221,4 @@ def _both(even: Array) -> Array:
 
 
 def _symmetric(matrix: Array) -> Array:
-    return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    return 0.5 * (matrix + matrix.mT)

@@ -119,7 +119,7 @@ def _with_modes(beam: Beam, ends: Array, modes: tuple[FixedEndModes, ...]) -> Ar
     size = 12 + between.shape[-1]
     batch = np.broadcast_shapes(ends.shape[:-2], between.shape[:-2])
     result = np.zeros((*batch, size, size), dtype=np.result_type(ends, between))
-    result[..., :12, :12], result[..., :12, 12:], result[..., 12:, :12] = ends, between, np.swapaxes(between, -1, -2)
+    result[..., :12, :12], result[..., :12, 12:], result[..., 12:, :12] = ends, between, between.mT
     result[..., range(12, size), range(12, size)] = 1.0
     return result
 

@@ -159,7 +159,7 @@ def _theta(points: Stations, *numbers: Array) -> Array:
     out, running = points.rule.weights - points.rule.running, points.rule.running
     softness, spring, load = (np.real(each[..., :1]) for each in numbers)
     integral = out @ (softness * running)
-    system = np.eye(len(out)) + integral * np.swapaxes(spring, -1, -2)
+    system = np.eye(len(out)) + integral * spring.mT
     theta = np.linalg.solve(system, integral @ load)
     if not any(map(np.iscomplexobj, numbers)):
         return np.broadcast_to(theta, numbers[0].shape)

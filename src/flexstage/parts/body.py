@@ -441,8 +441,8 @@ def _meet(one: PlacedSolid, other: PlacedSolid) -> bool:
 def _seen_from(placed: PlacedSolid, frame: Frame) -> Solid:
     """A hole in another drawing frame."""
     hole, place = placed.solid, placed.frame
-    turn, own = np.swapaxes(frame.rotation, -1, -2), hole.frame
-    moved = place.rotation @ np.swapaxes(own.rotation, -1, -2)
+    turn, own = frame.rotation.mT, hole.frame
+    moved = place.rotation @ own.rotation.mT
     origin = place.position + (moved @ (stack(hole.at) - own.position)[..., None])[..., 0]
     changes = {"at": (turn @ (origin - frame.position)[..., None])[..., 0]}
     for name in ("along", "up"):

@@ -105,7 +105,7 @@ class Hertz:
     @property
     def matrix(self) -> Array:
         """Stiffness matrix (..., c, 3, 3) of each contact."""
-        across = np.swapaxes(self.normals[..., None, :], -1, -2) @ self.normals[..., None, :]
+        across = self.normals[..., None, :].mT @ self.normals[..., None, :]
         normal, tangential = (each[..., None, None, None] for each in (self.normal, self.tangential))
         return normal * across + tangential * (np.eye(3) - across)
 
@@ -142,7 +142,7 @@ def contact_stiffness(part: Contact, material: Material) -> Array:
     [15.87, 13.07, 13.07]
     """
     result = hertz(part, material)
-    return np.sum(np.swapaxes(result.motion, -1, -2) @ result.matrix @ result.motion, axis=-3)
+    return np.sum(result.motion.mT @ result.matrix @ result.motion, axis=-3)
 
 
 def _both(part: Contact, material: Material) -> tuple[Material, Material]:

@@ -159,7 +159,7 @@ def within(properties: MassProperties, frame: Frame) -> MassProperties:
     """
     if np.array_equal(frame.rotation, np.eye(3)):
         return MassProperties(properties.mass, frame.position + properties.centre, properties.inertia)
-    inertia = frame.rotation @ properties.inertia @ np.swapaxes(frame.rotation, -1, -2)
+    inertia = frame.rotation @ properties.inertia @ frame.rotation.mT
     return MassProperties(properties.mass, frame.point(properties.centre), inertia)
 
 

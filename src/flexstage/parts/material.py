@@ -201,7 +201,7 @@ class Material(Description):
         lattice = self._lattice(rotation)
         pairs = lattice[..., :, _FIRST] * lattice[..., :, _SECOND]
         isotropic = c12 * _VOLUME + c44 * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
-        return isotropic + (c11 - c12 - 2.0 * c44) * (np.swapaxes(pairs, -1, -2) @ pairs)
+        return isotropic + (c11 - c12 - 2.0 * c44) * (pairs.mT @ pairs)
 
     def turned(self, rotation: Array) -> Material:
         """Return the material for another stage, with its crystal directions rotated.
@@ -214,7 +214,7 @@ class Material(Description):
         """
         if not self.is_cubic or np.array_equal(rotation, np.eye(3)):
             return self
-        lattice = self._lattice(np.swapaxes(rotation, -1, -2))
+        lattice = self._lattice(rotation.mT)
         along, up = (tuple(np.moveaxis(lattice[..., :, axis], -1, 0).tolist()) for axis in (0, 2))
         return replace(self, crystal=(along, up))
 

@@ -62,9 +62,9 @@ def line_mass(mass: Number, length: Number) -> Array:
     half = 0.5 * np.asarray(length)
     first, second = _end(-half), _end(half)
     ends = np.concatenate([first, np.zeros_like(first)], axis=-1), np.concatenate([np.zeros_like(second), second], axis=-1)
-    own, mixed = (np.swapaxes(one, -1, -2) @ other for one, other in ((ends[0], ends[0]), (ends[0], ends[1])))
-    other = np.swapaxes(ends[1], -1, -2) @ ends[1]
-    return np.asarray(mass)[..., None, None] * ((own + other) / 3.0 + (mixed + np.swapaxes(mixed, -1, -2)) / 6.0)
+    own, mixed = (one.mT @ other for one, other in ((ends[0], ends[0]), (ends[0], ends[1])))
+    other = ends[1].mT @ ends[1]
+    return np.asarray(mass)[..., None, None] * ((own + other) / 3.0 + (mixed + mixed.mT) / 6.0)
 
 
 def _end(arm: Array) -> Array:
@@ -110,7 +110,7 @@ def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
     ['not symmetric: 1 and 0 SI']
     """
     real = np.real(matrix)
-    mirrored = np.swapaxes(real, -1, -2)
+    mirrored = real.mT
     size = np.max(np.abs(real), axis=-1)
     scale = np.sqrt(size[..., :, None] * size[..., None, :])
     unequal = np.abs(real - mirrored) > _SLACK * scale

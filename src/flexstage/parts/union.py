@@ -75,13 +75,13 @@ class Moments:
     def shift(self, by: Array) -> Moments:
         """Return the moments of the region translated by a vector (..., 3) or (..., 2)."""
         cross = self.first[..., :, None] * by[..., None, :]
-        moved = self.second + cross + np.swapaxes(cross, -1, -2) + self.volume[..., None, None] * by[..., :, None] * by[..., None, :]
+        moved = self.second + cross + cross.mT + self.volume[..., None, None] * by[..., :, None] * by[..., None, :]
         return Moments(self.volume, self.first + self.volume[..., None] * by, moved)
 
     def within(self, frame: Frame) -> Moments:
         """Return the moments in the parent frame of `frame`."""
         turn = frame.rotation
-        second = turn @ self.second @ np.swapaxes(turn, -1, -2)
+        second = turn @ self.second @ turn.mT
         return Moments(self.volume, (turn @ self.first[..., None])[..., 0], second).shift(frame.position)
 
 
@@ -255,13 +255,13 @@ def _prisms(drawn: Drawn, axis: int) -> list[_Prism]:
 def _moments(prisms: Sequence[_Prism]) -> Moments | None:
     """Moments of the intersection of prisms along one axis; `None` if a ball crosses the sides of one."""
     base = prisms[0].frame
-    turn = np.swapaxes(base.rotation, -1, -2)
+    turn = base.rotation.mT
     at = [(turn @ (each.frame.position - base.position)[..., None])[..., 0] for each in prisms]
     long = [(each, place) for each, place in zip(prisms, at, strict=True) if each.corners is not None or each.radius is not None]
     low, high = -_least([each.half - place[..., 0] for each, place in long]), _least([place[..., 0] + each.half for each, place in long])
     polygons = [
         (
-            _unstepped(place[..., None, 1:] + each.corners @ np.swapaxes((turn @ each.frame.rotation)[..., 1:, 1:], -1, -2)),
+            _unstepped(place[..., None, 1:] + each.corners @ (turn @ each.frame.rotation)[..., 1:, 1:].mT),
             each.is_rectangle,
         )
         for each, place in long
@@ -399,7 +399,7 @@ def _along(start: Array, end: Array) -> Moments:
     """Moments of the triangles from the origin to sides (..., n, 2), signed by orientation."""
     cross = _cross(start, end)
     total = start + end
-    second = sum((np.swapaxes(each, -1, -2) @ (cross[..., None] * each) for each in (start, end, total)), np.zeros((2, 2)))
+    second = sum((each.mT @ (cross[..., None] * each) for each in (start, end, total)), np.zeros((2, 2)))
     return Moments(0.5 * np.sum(cross, axis=-1), np.sum(cross[..., None] * total, axis=-2) / 6.0, second / 24.0)
 
 

@@ -151,7 +151,7 @@ def separations(ones: Boxes, others: Boxes) -> Array:
     [1.0]
     """
     turn, face = ones.turns, others.turns
-    own_axes, other_axes = (np.swapaxes(each, -1, -2) for each in np.broadcast_arrays(turn, face))
+    own_axes, other_axes = (each.mT for each in np.broadcast_arrays(turn, face))
     edges = np.cross(own_axes[:, :, None], other_axes[:, None]).reshape(-1, 9, 3)
     directions = np.concatenate([own_axes, other_axes, edges], axis=1)
     lengths = np.linalg.norm(directions, axis=-1, keepdims=True)

@@ -143,7 +143,7 @@ def twist_transform(frame: Frame, reference: Array) -> Array:
     >>> twist_transform(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
     True
     """
-    back = np.swapaxes(frame.rotation, -1, -2)
+    back = frame.rotation.mT
     lever = back @ cross_matrix(reference - frame.position)
     result = np.zeros((*lever.shape[:-2], 6, 6), dtype=lever.dtype)
     result[..., :3, :3] = back
@@ -206,5 +206,5 @@ def rigid_inertia(mass: Number, inertia: Array, centre: Array, reference: Array)
     result = np.zeros((*shape, 6, 6), dtype=np.result_type(mass, inertia, lever))
     moment = mass * lever
     result[..., :3, :3], result[..., 3:, :3], result[..., :3, 3:] = mass * np.eye(3), moment, -moment
-    result[..., 3:, 3:] = inertia + np.swapaxes(lever, -1, -2) @ moment
+    result[..., 3:, 3:] = inertia + lever.mT @ moment
     return result

@@ -39,7 +39,7 @@ def logarithm(rotation: Array) -> Array:
     >>> logarithm(exponential(np.array([0.1, -0.2, 0.3]))).round(12).tolist()
     [0.1, -0.2, 0.3]
     """
-    skew = 0.5 * (rotation - np.swapaxes(rotation, -1, -2))
+    skew = 0.5 * (rotation - rotation.mT)
     axis = np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=-1)
     cosine = 0.5 * (np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
     square = np.sum(axis * axis, axis=-1)

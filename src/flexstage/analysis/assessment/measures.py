@@ -249,7 +249,7 @@ def least_stiffness(bench: StageResults, asked: Measure) -> Array:
     The direction is real, so that complex-step derivatives of a simple eigenvalue are exact.
     """
     block = _compliance(bench, asked)[..., :3, :3]
-    worst = np.linalg.eigh(0.5 * np.real(block + np.swapaxes(block, -1, -2)))[1][..., :, -1]
+    worst = np.linalg.eigh(0.5 * np.real(block + block.mT))[1][..., :, -1]
     return 1.0 / np.einsum("...i,...ij,...j->...", worst, block, worst)
 
 
@@ -600,7 +600,7 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
         inverse = np.linalg.inv(np.linalg.cholesky(np.real(stiffness)))
     except np.linalg.LinAlgError:
         raise refuse(asked.key, "with the required motions fixed, the stage has a motion without stiffness", "Add links") from None
-    lowest = np.linalg.eigh(inverse @ np.real(mass) @ np.swapaxes(inverse, -1, -2))[1][..., :, -1]
+    lowest = np.linalg.eigh(inverse @ np.real(mass) @ inverse.mT)[1][..., :, -1]
     mode = np.einsum("...ji,...j->...i", inverse, lowest)
     square = np.einsum("...i,...ij,...j->...", mode, stiffness, mode) / np.einsum("...i,...ij,...j->...", mode, mass, mode)
     return np.sqrt(square) / (2.0 * np.pi)

@@ -150,7 +150,7 @@ def _budget(kinematics: Kinematics, model: LinearModel, sense: Array, loss: Arra
     """Link forces under the platform wrenches times the links' ideal deformations, axis by axis; none for flexures with internal modes."""
     names = kinematics.actuators
     rows = model.output_index(_PLATFORM_TWIST)
-    loads = np.swapaxes(model.output[..., rows, :], -1, -2) @ np.swapaxes(sense, -1, -2)
+    loads = model.output[..., rows, :].mT @ sense.mT
     strains = part_deformation(model, displacement(model, loads))
     if any(strain.shape[-2] != kinematics.strains[link].shape[-2] for link, strain in strains.items() if link in kinematics.strains):
         return {}
@@ -180,7 +180,7 @@ def _internal(kinematics: Kinematics, model: LinearModel, sense: Array, strains:
     work = sense @ model.feedthrough[..., model.output_index(_PLATFORM_TWIST), :][..., columns]
     for link, imposed in model.imposed.items():
         force = model.stiffness[link].law @ strains[link]
-        work = work + np.swapaxes(force, -1, -2) @ imposed[..., columns]
+        work = work + force.mT @ imposed[..., columns]
     return np.eye(len(names)) - feasible + work @ (feasible - np.eye(len(names)))
 
 

@@ -122,7 +122,7 @@ def highest_gain(matrices: Array) -> tuple[float, int]:
     >>> highest_gain(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 3.0], [0.0, 4.0]]]))
     (5.0, 1)
     """
-    squares = np.conj(np.swapaxes(matrices, -1, -2)) @ matrices
+    squares = np.conj(matrices.mT) @ matrices
     sizes = np.abs(squares)
     reached = np.max(np.einsum("fkk->fk", sizes))
     places = np.flatnonzero(np.max(np.sum(sizes, axis=-1), axis=-1) >= reached * (1.0 - _ROUNDING))

@@ -480,7 +480,7 @@ def beside_one_another(grids: list[list[Array]]) -> list[tuple[Array, ...]]:
 def _blocks(within: Field) -> list[tuple[int, ...]]:
     """Strongly coupled loops, one set of each group of equal sets."""
     own = np.einsum("vfkk->vfk", within.plants)
-    both = np.abs(within.plants * np.swapaxes(within.plants, -1, -2) / (own[..., :, None] * own[..., None, :]))
+    both = np.abs(within.plants * within.plants.mT / (own[..., :, None] * own[..., None, :]))
     count, owners = scipy.sparse.csgraph.connected_components(np.max(both, axis=(0, 1)) > _COUPLED)
     blocks = [tuple(np.flatnonzero(owners == owner).tolist()) for owner in range(count)]
     kinds = {tuple(sorted(within.alike[loop] for loop in block)): block for block in reversed(blocks)}
@@ -825,7 +825,7 @@ def closed_by(plants: Array, responses: Array) -> Array:
 def _adjugate(given: Array) -> Array:
     if given.shape[-1] == 1:
         return np.ones_like(given)
-    return given[..., ::-1, ::-1].swapaxes(-1, -2) * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return given[..., ::-1, ::-1].mT * np.array([[1.0, -1.0], [-1.0, 1.0]])
 
 
 def _determinant(given: Array) -> Array:

@@ -222,7 +222,7 @@ def _turned(inertia: Inertia | None, frame: Frame) -> Inertia | None:
     """Moments of inertia in the axes of the carrying stage: R J R^T."""
     if inertia is None or np.array_equal(frame.rotation, np.eye(3)):
         return inertia
-    matrix = frame.rotation @ tensor(inertia) @ np.swapaxes(frame.rotation, -1, -2)
+    matrix = frame.rotation @ tensor(inertia) @ frame.rotation.mT
     moments = [_number(matrix[..., axis, axis]) for axis in range(3)]
     return Inertia(*moments, *(_number(-matrix[..., one, other]) for one, other in ((0, 1), (0, 2), (1, 2))))
 

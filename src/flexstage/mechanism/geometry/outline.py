@@ -50,9 +50,9 @@ class Outline:
         if self.is_ball:
             return middle + 0.5 * self.size[..., 0]
         if self.corners is not None:
-            across = (np.swapaxes(self.frame.rotation, -1, -2) @ direction[..., None])[..., 0]
+            across = (self.frame.rotation.mT @ direction[..., None])[..., 0]
             return middle + np.max(np.sum(self.corners * across[..., None, :], axis=-1), axis=-1)
-        own = np.abs((np.swapaxes(self.frame.rotation, -1, -2) @ direction[..., None])[..., 0])
+        own = np.abs((self.frame.rotation.mT @ direction[..., None])[..., 0])
         if not self.is_cylinder:
             return middle + 0.5 * np.sum(self.size * own, axis=-1)
         across = np.sqrt(np.maximum(0.0, 1.0 - own[..., 0] ** 2))

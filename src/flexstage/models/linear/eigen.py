@@ -114,7 +114,7 @@ def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
     inverse_values, vectors = np.linalg.eigh(scaled)
     inverse_values = _massive(inverse_values[..., ::-1], lower, inertia)
     vectors = vectors[..., ::-1][..., : inverse_values.shape[-1]]
-    shapes = np.linalg.solve(np.swapaxes(lower, -1, -2), vectors) / np.sqrt(inverse_values)[..., None, :]
+    shapes = np.linalg.solve(lower.mT, vectors) / np.sqrt(inverse_values)[..., None, :]
     failed = np.isnan(lower[..., 0, 0])
     values = np.where(failed[..., None], np.nan, 1.0 / inverse_values)
     return Eigen(values, np.where(failed[..., None, None], np.nan, _apply_signs(shapes, weights)))
@@ -126,8 +126,8 @@ def _scaled(stiffness: Array, inertia: Array) -> tuple[Array, Array]:
     stiffness = np.broadcast_to(stiffness, (*batch, *stiffness.shape[-2:]))
     lower = cholesky(stiffness)
     half = _forward(lower, np.broadcast_to(inertia, stiffness.shape))
-    full = _forward(lower, np.swapaxes(half, -1, -2))
-    return lower, _clean(0.5 * (full + np.swapaxes(full, -1, -2)))
+    full = _forward(lower, half.mT)
+    return lower, _clean(0.5 * (full + full.mT))
 
 
 def _forward(lower: Array, right: Array) -> Array:

@@ -141,7 +141,7 @@ def _with_dampers(model: LinearModel, chosen: Ports, frequencies: Array, damping
     dragged: Array = np.zeros((len(model.coordinates), len(chosen.inputs)))
     for name, law in model.viscous.items():
         rows = model.stiffness[name].operator[..., : law.shape[-1], :]
-        push = np.swapaxes(rows, -1, -2) @ law
+        push = rows.mT @ law
         resisted = resisted + push @ rows
         dragged = dragged + push @ imposed_on(model, name, chosen)
     if not np.iscomplexobj(stiffness):
@@ -156,7 +156,7 @@ def _law_matrix(model: LinearModel, damping: Damping) -> Array:
         return mass * model.inertia_matrix + stiffness * model.stiffness_matrix
     solved = eigen(model)
     momenta = model.inertia_matrix @ solved.shapes
-    return (momenta * law_rates(model, solved, damping)[..., None, :]) @ np.swapaxes(momenta, -1, -2)
+    return (momenta * law_rates(model, solved, damping)[..., None, :]) @ momenta.mT
 
 
 def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
@@ -249,7 +249,7 @@ def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
     >>> modal_forces(Eigen(np.array([4.0]), one), force)[0].tolist()
     [[3.0]]
     """
-    transposed = np.swapaxes(solved.shapes, -1, -2)
+    transposed = solved.shapes.mT
     return transposed @ chosen.force, transposed @ chosen.inertial
 
 
@@ -268,7 +268,7 @@ def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
     batch = np.broadcast_shapes(model.stiffness_matrix.shape[:-2], chosen.force.shape[:-2])
     motion = model.solve(np.broadcast_to(chosen.force, (*batch, *chosen.force.shape[-2:])))
     elastic = np.where(solved.values == 0.0, np.inf, solved.values)
-    modal = np.swapaxes(solved.shapes, -1, -2) @ chosen.force / elastic[..., :, None]
+    modal = solved.shapes.mT @ chosen.force / elastic[..., :, None]
     return chosen.output @ (motion - solved.shapes @ modal)
 
 

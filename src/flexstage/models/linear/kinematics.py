@@ -190,7 +190,7 @@ class Kinematics(Result):
     def inverse(self) -> Array:
         """Inverse of R_a, d xi/da (..., f, n); the least-squares inverse for redundant strokes."""
         self._require_actuated()
-        transposed = np.swapaxes(self.actuation, -1, -2)
+        transposed = self.actuation.mT
         if self.actuation.shape[-1] == self.actuation.shape[-2]:
             return np.linalg.inv(self.actuation)
         return np.linalg.solve(transposed @ self.actuation, transposed)
@@ -204,7 +204,7 @@ class Kinematics(Result):
     def projection(self) -> Array:
         """Projection V^+ (..., f, 6) of a platform twist on the ideal motions, with rotations weighted by `length`."""
         weight = _scales(COMPONENTS, self.length)[..., None, :] ** 2
-        weighted = np.swapaxes(self.motion, -1, -2) * weight
+        weighted = self.motion.mT * weight
         return np.linalg.solve(weighted @ self.motion, weighted)
 
     def _require_actuated(self) -> None:

@@ -161,7 +161,7 @@ class LinearModel(InNotebook, CheckedFields):
         """Compute the motion (..., n, k) of least strain energy when `strains` (..., r, k) are imposed: -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
-        forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())
+        forces = (part.operator.mT @ (part.law @ strains[name]) for name, part in self.stiffness.items())
         return self.solve(-sum(forces, np.zeros((len(self.coordinates), 1))))
 
     def momenta(self, motion: Array) -> Array:
@@ -192,7 +192,7 @@ class LinearModel(InNotebook, CheckedFields):
         for name, deformation in self.imposed.items():
             part = self.stiffness[name]
             factor = np.asarray(part.loss_factor)[..., None, None] if lost else 1.0
-            total = total + factor * (_transpose(part.operator) @ (part.law @ deformation))
+            total = total + factor * (part.operator.mT @ (part.law @ deformation))
         return total
 
     def output_index(self, names: tuple[str, ...]) -> list[int]:
@@ -246,7 +246,7 @@ def assemble(contributions: Contributions, size: int) -> Array:
     else:
         total = strain_forces(contributions, {name: item.operator for name, item in contributions.items()})
         total = total if isinstance(total, np.ndarray) else total.toarray()
-    return 0.5 * (total + _transpose(total))
+    return 0.5 * (total + total.mT)
 
 
 def _sum_by_columns(contributions: Contributions, size: int) -> Array:
@@ -258,7 +258,7 @@ def _sum_by_columns(contributions: Contributions, size: int) -> Array:
         columns = np.flatnonzero(np.any(item.operator, axis=tuple(range(item.operator.ndim - 1))))
         own = item.operator[..., columns]
         whole = own.ndim == 2 and np.array_equal(own, np.eye(*own.shape))
-        total[..., columns[:, None], columns] += item.law if whole else _transpose(own) @ (item.law @ own)
+        total[..., columns[:, None], columns] += item.law if whole else own.mT @ (item.law @ own)
     return total
 
 
@@ -274,7 +274,7 @@ def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) ->
     if isinstance(operators[0], Sparse):
         rows = as_csr(cast("list[Sparse]", operators), operators[0].shape[-1]).T
         return rows @ (as_csr(cast("list[Sparse]", forces), rows.shape[0]) if isinstance(forces[0], Sparse) else np.concatenate(forces))
-    return _transpose(_stack(operators)) @ _stack(forces)
+    return _stack(operators).mT @ _stack(forces)
 
 
 def _freeze(matrix: Array) -> Array:
@@ -286,10 +286,6 @@ def _freeze(matrix: Array) -> Array:
 def _stack(matrices: list[Array]) -> Array:
     batch = np.broadcast_shapes(*{matrix.shape[:-2] for matrix in matrices})
     return np.concatenate([np.broadcast_to(matrix, (*batch, *matrix.shape[-2:])) if batch else matrix for matrix in matrices], axis=-2)
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)
 
 
 def label(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:

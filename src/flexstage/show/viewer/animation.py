@@ -238,7 +238,7 @@ def _piece(carrier: _Carrier, line: Line | None, at: Callable[[int, Array], Arra
         first, second = (at(body, end) for body, end in zip(carrier.bodies, carrier.ends, strict=True))
         place = first[:, None] + shares[:, None] * (second - first)[:, None]
         one, other = (turn[:, body] for body in carrier.bodies)
-        half = logarithm(np.swapaxes(one, -1, -2) @ other)
+        half = logarithm(one.mT @ other)
         vectors = logarithm(one[:, None] @ exponential(shares[:, None] * half[:, None]))
     return np.concatenate([place - drawn, vectors], axis=-1)
 

@@ -64,7 +64,7 @@ def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]
     solved = solve(stiffness, inertia, np.ones(stiffness.shape[-1]))
     rows = np.real(platform_rows(model))
     rows = rows[first] if rows.ndim > 2 and len(rows) > 1 else rows
-    root = np.linalg.solve(cholesky(stiffness), np.swapaxes(rows, -1, -2))
+    root = np.linalg.solve(cholesky(stiffness), rows.mT)
     parts = participation(root, rows @ solved.shapes, solved.values)
     picked = [[_select_modes(wanted, solved.values[design], parts[design]) for wanted in asked] for design in range(designs)]
     result = []
@@ -119,5 +119,5 @@ def _project(contributions: dict[str, Contribution], shapes: Array) -> Array:
     for item in contributions.values():
         if np.iscomplexobj(item.operator) or np.iscomplexobj(item.law):
             seen = item.operator @ shapes
-            total = total + np.imag(np.swapaxes(seen, -1, -2) @ item.law @ seen) / _STEP
-    return 0.5 * (total + np.swapaxes(total, -1, -2))
+            total = total + np.imag(seen.mT @ item.law @ seen) / _STEP
+    return 0.5 * (total + total.mT)
