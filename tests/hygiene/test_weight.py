@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 27_700,
+    "base": 28_800,
     "spatial": 3_900,
-    "parts": 38_100,
-    "beams": 25_900,
-    "mechanism": 56_400,
+    "parts": 37_400,
+    "beams": 25_300,
+    "mechanism": 55_000,
     "cases": 1_200,
-    "models": 97_900,
-    "analysis": 71_000,
-    "show": 63_700,
-    "solid": 76_700,
-    "experiment": 99_200,
-    "control": 154_500,
-    "studies": 70_000,
-    "apps": 39_400,
+    "models": 94_100,
+    "analysis": 69_700,
+    "show": 62_600,
+    "solid": 71_700,
+    "experiment": 96_400,
+    "control": 148_500,
+    "studies": 69_300,
+    "apps": 36_900,
     ".": 400,
-    "all": 825_500,
+    "all": 800_500,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -244,6 +244,7 @@ def test_a_gap_divides_the_record(suffix: str, tmp_path: Path) -> None:
 def test_times_that_are_none_are_told(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     assert "not evenly spaced" in refusal(with_times(path, np.cumsum(np.random.default_rng(0).exponential(0.01, 400))))
+    assert "2 of 2 steps" in refusal(with_times(path, np.array([0.0, 1.0, 6.0])))
     assert "do not increase" in refusal(with_times(path, np.round(np.arange(400) / 1e6, 3)))
     broken = np.arange(400) / RATE
     broken[7] = np.nan

@@ -59,6 +59,6 @@ def each_part(compute: Callable[[_Item], _Result], items: Sequence[_Item]) -> li
     return found
 
 
-def report(share: float) -> None:
-    """Report the completed fraction of the current part, 0 to 1."""
-    _FOLLOWER.get()("", share)
+def report(share: float, text: str = "") -> None:
+    """Report the completed fraction of the current part, 0 to 1; `text` is used if the part has no description of its own."""
+    _FOLLOWER.get()(text, share)

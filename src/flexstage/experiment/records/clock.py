@@ -161,6 +161,6 @@ def _problems(times: Array, typical: float, jumps: int, where: str) -> Iterator[
         yield Finding(where, what, "Write times with more digits, or specify the rate")
     elif not RATES[0] <= 1.0 / typical <= RATES[1]:
         yield Finding(where, f"invalid median time step (got {typical:.4g} s)", "Write times in s, or specify the rate")
-    elif jumps > max(2, 0.01 * count):
-        what = f"its samples are not evenly spaced: {jumps} of {count} steps differ by more than 50 % from the median, {typical:.4g} s"
+    elif jumps > min(count - 2, max(2, 0.01 * count)):
+        what = f"its samples are not evenly spaced: {jumps} of {count - 1} steps differ by more than 50 % from the median, {typical:.4g} s"
         yield Finding(where, what, "Resample the record evenly, or specify the rate if only the times are wrong")
