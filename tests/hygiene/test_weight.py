@@ -14,16 +14,16 @@ CEILINGS = {
     "beams": 25_300,
     "mechanism": 55_000,
     "cases": 1_200,
-    "models": 94_100,
+    "models": 96_200,
     "analysis": 69_700,
     "show": 62_600,
     "solid": 71_700,
     "experiment": 96_400,
     "control": 148_500,
-    "studies": 69_300,
+    "studies": 69_500,
     "apps": 36_900,
     ".": 400,
-    "all": 800_500,
+    "all": 802_900,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
