@@ -120,7 +120,7 @@ class Jobs:
         if job is None:
             raise refuse(f"job {number}", "unknown job", "Choose a job of the list")
         if job.state.state in ("waits", "runs"):
-            self._set(job, state="cancelled", text="cancelled")
+            self._set(job, replace(job.state, state="cancelled", text="cancelled"))
             if job.process is not None:
                 self._end(job.process)
 
@@ -146,9 +146,9 @@ class Jobs:
             try:
                 await self._follow(job)
             except DesignError as error:
-                self._set(job, state="failed", text=str(error))
+                self._set(job, replace(job.state, state="failed", text=str(error)))
             except OSError as error:
-                self._set(job, state="failed", text=f"the system cannot start a process: {error}")
+                self._set(job, replace(job.state, state="failed", text=f"the system cannot start a process: {error}"))
             finally:
                 self._remove(job)
 
@@ -158,7 +158,7 @@ class Jobs:
             self._folder = make_temporary_folder()
         report, document = (self._folder / f"{job.number}.{ending}" for ending in ("html", "json"))
         arguments = [*self._arguments(job), *job.request.options, "--report", str(report), "--json", str(document)]
-        self._set(job, state="runs", text="starts")
+        self._set(job, replace(job.state, state="runs", text="starts"))
         job.process = process = await asyncio.create_subprocess_exec(
             *(sys.executable, *self.program, job.request.command, *arguments),
             limit=_LONGEST,
@@ -185,7 +185,7 @@ class Jobs:
         if code == 0 and better.is_file():
             self._optimum(job.as_read(better.read_text(encoding="utf-8")))
         state, text = ("done", _ENDS.get(job.request.command, "done")) if code in (0, 1) else ("failed", f"ended with exit code {code}")
-        self._set(job, state=state, text=text, fraction=1.0 if state == "done" else None, left=None)
+        self._set(job, replace(job.state, state=state, text=text, fraction=1.0 if state == "done" else None, left=None))
 
     def _arguments(self, job: _Job) -> list[str]:
         """The files for its command; an unsaved text is stored temporarily next to its file."""
@@ -225,7 +225,7 @@ class Jobs:
             return
         _, fraction, left, text = [*job.as_read(line).split(" ", 3), ""][:4]
         with contextlib.suppress(ValueError):
-            self._set(job, text=text, fraction=float(fraction), left=None if left == "-" else float(left))
+            self._set(job, replace(job.state, text=text, fraction=float(fraction), left=None if left == "-" else float(left)))
 
     def _take(self, job: _Job, pair: Mapping[str, str] | None = None, tables: Iterable[tuple[Any, ...]] = ()) -> None:
         """Take a pair of a design job, in place of its earlier result, or the tables at its end."""
@@ -235,11 +235,11 @@ class Jobs:
             names = row.architecture, row.actuator
             job.designs[" with ".join(names)] = pair["design"]
             pairs = (*(each for each in pairs if (each.architecture, each.actuator) != names), row)
-        self._set(job, pairs=pairs, tables=tuple(say.ResultTable(title, rows, notes) for title, rows, notes in tables))
+        self._set(job, replace(job.state, pairs=pairs, tables=tuple(say.ResultTable(title, rows, notes) for title, rows, notes in tables)))
 
-    def _set(self, job: _Job, **changes: Any) -> None:
+    def _set(self, job: _Job, state: say.JobState) -> None:
         if job.state.state != "cancelled":
-            job.state = replace(job.state, **changes)
+            job.state = state
             self._push()
 
     def _push(self) -> None:

@@ -163,7 +163,11 @@ class Record(InNotebook, CheckedFields):
         """Return the column indices of the named channels; raises `DesignError` for every unknown name."""
         chosen, known = tuple(names), self.names
         where = self.where
-        require(Finding(f"{where}: {name}", "unknown channel", suggest_nearest(name, known)) for name in set(chosen) - set(known))
+        require(
+            Finding(f"{where}: {name}", "unknown channel", suggest_nearest(name, known))
+            for name in dict.fromkeys(chosen)
+            if name not in known
+        )
         return tuple(known.index(name) for name in chosen)
 
     def select(self, names: Iterable[str]) -> Record:

@@ -121,8 +121,8 @@ def load_notes(mechanism: Mechanism, model: Model) -> tuple[str, ...]:
 
 def known_point(model: LinearModel, name: str, option: str) -> str:
     """Return the name of a body or point whose twist the model computes. Raises `DesignError` with similar names for an unknown name."""
-    outputs = {channel.name for channel in model.outputs}
-    places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
+    outputs = [channel.name.rpartition(".") for channel in model.outputs]
+    places = dict.fromkeys(place for place, _, component in outputs if component in COMPONENTS)
     if name not in places:
         raise refuse(option, f"unknown body or point {name}", suggest_nearest(name, places))
     return name
