@@ -12,7 +12,7 @@ CEILINGS = {
     "spatial": 3_900,
     "parts": 37_400,
     "beams": 25_300,
-    "mechanism": 55_000,
+    "mechanism": 55_100,
     "cases": 1_200,
     "models": 96_200,
     "analysis": 69_700,
@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 69_500,
     "apps": 37_000,
     ".": 400,
-    "all": 802_900,
+    "all": 803_100,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

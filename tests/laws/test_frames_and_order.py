@@ -12,6 +12,7 @@ import pytest
 import flexstage as fs
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.mount import mount
 from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Mechanism
@@ -120,3 +121,20 @@ def test_results_by_name_do_not_depend_on_the_order_of_entries(name: str) -> Non
 PARTS = (("statics", "compliance"), ("deflection", "by_cause"), ("drift", "motion"), ("drift", "gauges"), ("lost_motion", "gain"),
          ("lost_motion", "loss"), ("force_workspace", "per_motion"), ("force_workspace", "bounds"))  # fmt: skip
 """Results with names on both axes."""
+
+
+def test_channels_stand_in_the_order_of_the_design_whatever_was_analysed_before() -> None:
+    stage = fs.case("double-triangle")
+    other = replace(stage, placements=dict(reversed(list(stage.placements.items()))))
+    first, second = fs.ideal(stage).actuators, fs.ideal(other).actuators
+    assert first != second
+    assert set(first) == set(second)
+    assert second[0] in {"B4", "B5", "B6"}
+
+
+def test_links_of_units_may_have_names_of_several_words() -> None:
+    stage = replace(fs.case("parallelogram"), requirements={}, paths={}, overrides={})
+    unit = stage.units["drive"]
+    other = replace(stage, units={"drive": replace(unit, links={f"left/{name}": link for name, link in unit.links.items()})})
+    assert "B/left/back" in expand(other).links
+    assert fs.modes(fs.lumped(other)).frequencies == pytest.approx(fs.modes(fs.lumped(stage)).frequencies, rel=1e-12)

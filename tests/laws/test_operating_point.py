@@ -74,6 +74,14 @@ def test_what_is_released_moves_as_two_more_equilibria_say(held: str):
     assert found == pytest.approx(rate, rel=tolerance)
 
 
+def test_an_operating_point_keeps_what_was_asked():
+    asked = {"platform.x": 1e-4}
+    point = operating_point(parallelogram(), asked)
+    asked["platform.x"] = 5e-4
+    assert point.held is not None
+    assert point.held.at("platform.x", "value") == pytest.approx(1e-4)
+
+
 def test_the_frame_does_not_matter():
     turn = exponential(np.array([0.0, 0.0, 0.5 * np.pi]))
     here = operating_point(guide(gravity=DOWN), {"platform.y": 8e-3}, loads={"platform.fx": -10.0})

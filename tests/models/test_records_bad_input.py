@@ -103,6 +103,15 @@ def test_channels_that_no_one_has_are_named_with_the_nearest(tmp_path: Path) -> 
 # --- files that break off ---
 
 
+def test_a_last_line_that_ends_in_a_missing_value_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time [s],a [um]\n" + "".join(f"{0.1 * number:.1f},1.5,\n" for number in range(20)) + "2.0,,")
+    found = read(path)
+    assert isinstance(found, Record)
+    assert found.length == 21
+    assert np.isnan(found.values[-1]).all()
+
+
 @pytest.mark.parametrize(("form", "suffix"), [("uff", "uff"), ("uff-ascii", "uff"), ("csv", "csv")])
 def test_a_file_that_breaks_off_is_used_only_when_allowed(form: str, suffix: str, tmp_path: Path) -> None:
     path = plain(tmp_path / f"a.{suffix}", form)

@@ -104,7 +104,7 @@ def same_batch(*matrices: Array) -> list[Array]:
     [(4, 2, 2), (4, 1, 3)]
     """
     batch = np.broadcast_shapes(*(each.shape[:-2] for each in matrices))
-    return [np.broadcast_to(each, (*batch, *each.shape[-2:])) for each in matrices]
+    return [np.broadcast_to(each, (*batch, *each.shape[-2:])) for each in matrices] if batch else list(matrices)
 
 
 def join(matrices: Iterable[Array], axis: int = -2) -> Array:

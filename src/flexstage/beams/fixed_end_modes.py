@@ -164,7 +164,7 @@ class _Across:
 
 @functools.cache
 def _across(degrees: tuple[int, ...]) -> _Across:
-    places, weights = legendre.leggauss(max(degrees) + 1)
+    places, weights = _gauss(max(degrees) + 1)
     series = np.eye(max(degrees) + 1)[:, list(degrees)]
     plain, slope, bend = (legendre.legval(places, legendre.legder(series, order, axis=0)) for order in range(3))
     return _Across((plain**2) @ weights, (slope * weights) @ slope.T, (bend * weights) @ bend.T, (plain * weights) @ bend.T, bend @ weights)
@@ -220,7 +220,7 @@ class _Basis:
 
     def product(self, order: int, other_order: int, other: _Basis | None = None) -> Array:
         """Integrals (n, n) of the product of derivatives."""
-        places, weights = legendre.leggauss(len(self.series[0]) + 4)
+        places, weights = _gauss(len(self.series[0]) + 4)
         return (self.at(places, order) * weights) @ (other or self).at(places, other_order).T
 
 
@@ -229,6 +229,11 @@ def _basis(size: int, folds: int) -> _Basis:
     """Legendre polynomials integrated `folds` times: they vanish at both ends with all derivatives of lower order."""
     series = legendre.legint(np.vstack([np.zeros((folds, size)), np.eye(size)]), folds, lbnd=-1.0, axis=0)
     return _Basis(tuple(legendre.legder(series, order, axis=0) for order in range(3)))
+
+
+@functools.cache
+def _gauss(count: int) -> tuple[Array, Array]:
+    return legendre.leggauss(count)
 
 
 def _matrix(blocks: list[dict[tuple[int, int], tuple[Number, Array]]], fields: int, size: int) -> Array:

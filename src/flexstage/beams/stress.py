@@ -71,7 +71,7 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     (15.0, 15.0)
     """
     factor = _factor(part)
-    if factor is None:
+    if factor is None or law_of(part).beam is None:
         return None
     beam = beam_of(inner(part), material)
     position = np.stack([-beam.points.position, beam.points.position], axis=-2)

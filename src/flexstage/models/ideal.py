@@ -25,7 +25,7 @@ from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import law
-from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.expand import Assembly, IdentityKey, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.assembly.incidence import LARGE, Layout, deformation, free_deformations, is_single, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.block_elimination import eliminate_blocks
@@ -81,13 +81,13 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()
     [1.0, 0.0, 0.0, 0.0, -0.025, 0.085]
     """
-    return _cached(mechanism) if is_single(expand(mechanism)) else _read(mechanism)
+    return _cached(IdentityKey(mechanism)) if is_single(expand(mechanism)) else _read(mechanism)
 
 
 @SESSION.keep(2)
-def _cached(mechanism: Mechanism) -> Kinematics:
+def _cached(key: IdentityKey) -> Kinematics:
     """Result of one design, cached for further calls with the same description."""
-    return _read(mechanism)
+    return _read(key.mechanism)
 
 
 def _read(mechanism: Mechanism) -> Kinematics:

@@ -182,8 +182,9 @@ def _near(seen: Sequence[Drawn]) -> Iterator[tuple[int, int]]:
     flush = [_FLUSH * np.linalg.norm(box.halves, axis=-1) for box in boxes]
     reach = [np.einsum("kij,kj->ki", np.abs(box.turns), box.halves) for box in boxes]
     for one, other in combinations(range(len(seen)), 2):
-        close = np.all(np.abs(boxes[other].centres - boxes[one].centres) < reach[one] + reach[other], axis=-1)
-        if np.any(close) and np.any(separations(boxes[one], boxes[other]) < -flush[one] - flush[other]):
+        least = flush[one] + flush[other]
+        close = np.all(np.abs(boxes[other].centres - boxes[one].centres) < reach[one] + reach[other] - least[..., None], axis=-1)
+        if np.any(close) and np.any(separations(boxes[one], boxes[other]) < -least):
             yield one, other
 
 

@@ -175,13 +175,14 @@ def operating_point(
     >>> round(float(result.moved.at("platform", "x")) * 1e6, 3), round(float(result.held.at("platform.x", "force")))
     (100.0, 1939)
     """
-    result = OperatingPoint(nonlinear(mechanism, temperature=temperature), loads or {}, at or {}, tuple(dict.fromkeys(fixed)))
+    result = OperatingPoint(nonlinear(mechanism, temperature=temperature), dict(loads or {}), dict(at or {}), tuple(dict.fromkeys(fixed)))
     require(result.contradictions())
     if not bool(result.state.converged):
         raise refuse("--at", *_how_far(result))
     _require_stable(result)
     if result.at:
         require_continuation(result.reach(0.0), result.state)
+    _ = result.linear  # refuses stages that are too large
     return result
 
 

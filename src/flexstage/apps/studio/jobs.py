@@ -149,6 +149,10 @@ class Jobs:
                 self._set(job, replace(job.state, state="failed", text=str(error)))
             except OSError as error:
                 self._set(job, replace(job.state, state="failed", text=f"the system cannot start a process: {error}"))
+            except ValueError as error:  # a line of its output is too long
+                self._set(job, replace(job.state, state="failed", text=f"its output cannot be read: {error}"))
+                if job.process is not None:
+                    self._end(job.process)
             finally:
                 self._remove(job)
 

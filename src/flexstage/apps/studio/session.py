@@ -278,12 +278,12 @@ class Session:
 
     async def answer_respond(self, request: say.Respond, *_: Any) -> None:
         """Change the choice of responses; refused if the stage has none of that name."""
-        choice = (request.inputs, request.outputs, request.low, request.high)
+        choice, computed = (request.inputs, request.outputs, request.low, request.high), self._computed
         found = await self._task_value(self._model, "figures", self._design, self._file, self.stored.text, choice)
         if "response" in found.missing:
             raise refuse("response", found.missing["response"].rstrip("."), "Choose among its inputs and outputs")
         self._choice = choice
-        self._push(replace(found, revision=self._computed))
+        self._push(replace(found, revision=computed))
 
     async def answer_derive(self, *_: Any) -> say.Said | None:
         """Run in a separate process, because of its duration; nothing for an outdated text."""
@@ -396,7 +396,7 @@ class Session:
                     return
                 self._took[stage] = (outcome.seconds, links)
                 self._report(stage, outcome.problems)
-                if not outcome.problems:
+                if not outcome.problems or (stage == "errors" and outcome.seconds):
                     self._last[stage] = work, revision
                 if outcome.value is not None:
                     self._push(replace(say.Scene(outcome.value) if stage == "scene" else outcome.value, revision=revision))

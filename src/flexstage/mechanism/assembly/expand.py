@@ -281,7 +281,6 @@ def expand(mechanism: Mechanism) -> Assembly:
     return assembly
 
 
-@SESSION.keep(2)
 def lay_out(mechanism: Mechanism) -> Assembly:
     """Expand a description as `expand` does; mass properties are computed only on first use.
 
@@ -289,6 +288,26 @@ def lay_out(mechanism: Mechanism) -> Assembly:
     >>> len(lay_out(double_triangle()).bodies)
     19
     """
+    return _assembly(IdentityKey(mechanism))
+
+
+class IdentityKey:
+    """Cache key that identifies a description by object identity: equal descriptions may have their tables in another order."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+
+    def __hash__(self) -> int:
+        return id(self.mechanism)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, IdentityKey) and self.mechanism is other.mechanism
+
+
+@SESSION.keep(2)
+def _assembly(key: IdentityKey) -> Assembly:
+    """The assembly, cached by description."""
+    mechanism = key.mechanism
     require([*place_findings(mechanism), *unknown_names(mechanism), *compound_findings(mechanism)])
     placed = tuple(copies(mechanism))
     described = tuple(_links(mechanism, placed))
@@ -510,12 +529,12 @@ def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Arr
 
 def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink | PlacedSuperelement]:
     """Links in the stage's frame; `owners` are the addresses of overrides by rising precedence."""
-    instances = {copy: (unit, frame) for copy, unit, frame in placed}
+    units = drawn_units(mechanism)
+    places = {f"{copy}/{own}": (unit, own, frame) for copy, unit, frame in placed for own in units[unit].links}
     for name, drawn, joins in placed_links(mechanism):
         owners, outer = (f"links.{name}",), identity()
-        if name not in mechanism.links:
-            copy, _, own = name.rpartition("/")
-            unit, outer = instances[copy]
+        if name in places:
+            unit, own, outer = places[name]
             owners = tuple(f"{owner}/{own}" for owner in link_lineage(mechanism, unit, own))
         link, part = apply_overrides(mechanism, drawn, (*owners, name))
         frame = Frame(axes(link.direction, link.bends), stack(link.centre)).within(outer)

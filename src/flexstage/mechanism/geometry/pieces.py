@@ -93,7 +93,7 @@ def _slabs(profile: Profile, trim: float) -> Iterator[_Slab]:
     """Stations and heights of the cuts' inner approximation, each slab of the right half followed by its mirror image."""
     for (here, there), (low, high) in _right(profile, 0.5 * single(length(profile)) - trim):
         yield (here, there), (low, high)
-        if here >= 0.0:
+        if there > -here:
             yield (-there, -here), (high, low)
 
 

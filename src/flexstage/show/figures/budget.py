@@ -95,7 +95,8 @@ def _stack_bars(axes: Any, shares: _Shares, totals: Sequence[str], label: str, p
 
 def _largest_parts(shares: _Shares) -> dict[str, Any]:
     """The largest parts and links of other units, the sum of the others last, with their colours."""
-    size = {part: share for part, share in largest_shares(shares).items() if share}
+    largest = largest_shares(shares)
+    size = {part: largest[part] for each in shares.values() for part, share in each.items() if share}
     least = 2e-3 * max(size.values(), default=0.0)
     ranked = sorted((part for part in size if size[part] > least), key=lambda part: -round(size[part], 12))
     chosen = [*[part for part in ranked if "/" not in part][:_COLOURED], *sorted(foreign_links(ranked, shares))]

@@ -55,7 +55,7 @@ class Layout:
         >>> Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ()).fields("1.0, 2.0")
         ['1.0', '2.0']
         """
-        return _without_last_empty(_fields(line, self.delimiter), len(self.names))
+        return _without_last_empty(split_fields(line, self.delimiter), len(self.names))
 
     def fits(self, line: str) -> bool:
         """Return whether a line has as many fields as columns; a trailing separator is allowed.
@@ -104,9 +104,9 @@ def _broken_row(where: str, above: list[str], form: tuple[str | None, str, int])
     rows = [number for number, line in enumerate(above) if _is_row(line)]
     if rows:
         columns = form[2]
-        broken = (at for at in range(rows[0], len(above)) if at not in rows or len(_fields(above[at], form[0])) != columns)
+        broken = (at for at in range(rows[0], len(above)) if at not in rows or len(split_fields(above[at], form[0])) != columns)
         at = next(broken, rows[-1])
-        line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
+        line, count = above[at].strip()[:60], len(split_fields(above[at], form[0]))
         wrong = "a field is not a number" if count == columns else f"wrong number of fields (got {count}, expected {columns})"
         what = f'{wrong} in a line between rows of numbers: "{line}"'
         yield Finding(
@@ -118,7 +118,7 @@ def _is_row(line: str) -> bool:
     """Whether a line contains only two or more numbers, with any separator."""
     if not _may_be_numbers(line):
         return False
-    divided = (_fields(line, delimiter) for delimiter in (";", "\t", ",", None))
+    divided = (split_fields(line, delimiter) for delimiter in (";", "\t", ",", None))
     return any(len(fields) > 1 and all(NUMBER.fullmatch(field) for field in fields) for fields in divided)
 
 
@@ -149,7 +149,7 @@ def _form(lines: list[str]) -> tuple[str | None, str, int] | None:
     for delimiter in (";", "\t", ",", None):
         if delimiter is not None and delimiter not in lines[0]:
             continue
-        split = [_fields(line, delimiter) for line in sure]
+        split = [split_fields(line, delimiter) for line in sure]
         filled = [field for fields in split for field in fields if field.lower() not in MISSING]
         if len({len(fields) for fields in split}) != 1 or not filled or not all(NUMBER.fullmatch(field) for field in filled):
             continue
@@ -160,7 +160,8 @@ def _form(lines: list[str]) -> tuple[str | None, str, int] | None:
     return None
 
 
-def _fields(line: str, delimiter: str | None) -> list[str]:
+def split_fields(line: str, delimiter: str | None) -> list[str]:
+    """Split a line at the delimiter (blanks without one), without surrounding blanks."""
     if delimiter is None:
         return line.split()
     try:
@@ -187,7 +188,9 @@ def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterato
     """Fields of the lines above the numbers, upwards, if they name all columns; lines without letters are skipped."""
     signs: list[str | None] = [delimiter, ",", ";", "\t", *([None] if delimiter in (None, "\t") else [])]
     for line in reversed([each for each in head if _LETTER.search(each)]):
-        divided = ([found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each) for each in dict.fromkeys(signs))
+        divided = (
+            [found[0] for found in _WORD.finditer(line)] if each is None else split_fields(line, each) for each in dict.fromkeys(signs)
+        )
         named = next((each for fields in divided if _are_names(each := _without_last_empty(fields, columns), columns)), None)
         if named is None:
             return

@@ -17,7 +17,7 @@ from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
 from flexstage.base.units.dimension import dimension_of
 from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Variable, complex_of, held_array, read_arrays
-from flexstage.experiment.formats.table.layout import Layout, read_layout
+from flexstage.experiment.formats.table.layout import Layout, read_layout, split_fields
 from flexstage.experiment.formats.table.values import TableSamples, index_table
 from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, matches
 from flexstage.experiment.records.record import Record, Responses
@@ -148,7 +148,7 @@ def _cut_short(path: Path, layout: Layout, end: int) -> str | None:
     with path.open("rb") as stream:
         stream.seek(max(layout.start, end - 100_000))
         last = stream.read(end - stream.tell()).decode(layout.encoding, "replace").splitlines()
-    fields = layout.fields(last[-1]) if last else [""] * len(layout.names)
+    fields = split_fields(last[-1], layout.delimiter) if last else [""] * len(layout.names)
     count = len(fields) if _ends_with_newline(path) or fields[-1] else len(fields) - 1
     return f"its last line has {count} of {len(layout.names)} fields" if count < len(layout.names) else None
 
