@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 69_500,
     "apps": 37_000,
     ".": 400,
-    "all": 803_100,
+    "all": 803_200,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -70,8 +70,8 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     >>> round(float(result.nominal) / 1e6, 2), round(6 * 0.025 / (0.01 * 0.001**2) / 1e6, 2)
     (15.0, 15.0)
     """
-    factor = _factor(part)
-    if factor is None or law_of(part).beam is None:
+    factor, own = _factor(part), law_of(part)
+    if factor is None or own is None or own.beam is None:
         return None
     beam = beam_of(inner(part), material)
     position = np.stack([-beam.points.position, beam.points.position], axis=-2)
