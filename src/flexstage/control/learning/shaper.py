@@ -73,5 +73,5 @@ def _shaper(frequency: float, damping: float, order: int) -> Shaper:
     require(found)
     root = float(np.sqrt(1.0 - damping**2))
     factor = float(np.exp(-damping * np.pi / root))
-    amplitudes = np.polynomial.polynomial.polypow([1.0, factor], order) / (1.0 + factor) ** order
+    amplitudes = np.array([[1.0, factor], [1.0, 2.0 * factor, factor**2]][order - 1]) / (1.0 + factor) ** order
     return Shaper(0.5 / (frequency * root) * np.arange(order + 1.0), amplitudes)

@@ -135,9 +135,15 @@ class ServedStage:
                 turn = found[start : start + _TURN]
                 if any(map(_HTTP.match, turn)):  # refuse pages of a browser
                     return
+                size = 0
                 for line in turn:
-                    writer.write(session.hear(line))
+                    answer = session.hear(line)
+                    writer.write(answer)
                     await writer.drain()  # wait for slow clients
+                    size += len(answer)
+                    if size > _READ:  # after long answers, serve the other clients
+                        size = 0
+                        await asyncio.sleep(0.0)
                 await asyncio.sleep(0.0)
 
 

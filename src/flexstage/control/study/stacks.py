@@ -150,8 +150,9 @@ def _of_width(width: float) -> PrandtlIshlinskii:
 def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> BoucWen:
     """Parallel Bouc-Wen stacks."""
     widths = np.broadcast_to(width, len(strokes)).tolist()
-    made = [bouc_wen(*each) for each in zip(strokes.tolist(), ranges, widths, strict=True)]
-    return BoucWen(*(np.concatenate([getattr(each, name) for each in made]) for name in ("gain", "lag", "beta", "gamma")))
+    kinds = list(zip(strokes.tolist(), ranges, widths, strict=True))
+    made = {kind: bouc_wen(*kind) for kind in set(kinds)}
+    return BoucWen(*(np.concatenate([getattr(made[kind], name) for kind in kinds]) for name in ("gain", "lag", "beta", "gamma")))
 
 
 def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:

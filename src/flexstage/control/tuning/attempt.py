@@ -160,14 +160,20 @@ class BandwidthTrial:
                 best, lowest = each, score
         return best
 
-    def _candidates(self, loop: int, notches: tuple[Notch, ...]) -> Iterator[_Chosen]:
+    def _candidates(self, loop: int, notches: tuple[Notch, ...]) -> tuple[_Chosen, ...]:
+        """All laws of the family with these notches, cached for other sets of notches and integrators."""
+        if (loop, notches) not in self._known:
+            self._known[loop, notches] = tuple(self._new_candidates(loop, notches))
+        return self._known[loop, notches]
+
+    def _new_candidates(self, loop: int, notches: tuple[Notch, ...]) -> Iterator[_Chosen]:
         """All laws of the family with these notches."""
         seen, frequency = self.seen, self.frequency
-        filters = [notch.system(seen.step) for notch in notches]
-        gain = complex(self._gains[loop]) * complex(np.prod([each.transfer(np.array([frequency]))[0, 0, 0] for each in filters]))
+        filters = [_sampled_notch(seen, notch) for notch in notches]
+        gain = complex(self._gains[loop]) * complex(np.prod([each.transfer(np.array([frequency]))[0, 0, 0] for each, _ in filters]))
         first = next((each.frequency for each in seen.resonances[loop]), None)
         place = Place(frequency, gain, float(seen.static[loop]), first)
-        filtered = np.prod([each.sweep(seen.frequencies)[:, 0, 0] for each in filters], axis=0) if filters else 1.0
+        filtered = np.prod([response for _, response in filters], axis=0) if filters else 1.0
         for law, response in self._responses(place):
             if response is not None:
                 whole = response * filtered
@@ -190,6 +196,10 @@ class BandwidthTrial:
     def _gains(self) -> Array:
         return self.seen.at(self.frequency)
 
+    @cached_property
+    def _known(self) -> dict[tuple[int, tuple[Notch, ...]], tuple[_Chosen, ...]]:
+        return {}
+
 
 def _choices(options: _Options) -> Iterator[_Options]:
     """Individual widths for each loop first; then one width for all, with less coupling on some stages."""
@@ -210,6 +220,14 @@ class _Chosen:
     notches: tuple[Notch, ...]
     response: Array
     nominal: float
+
+
+def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
+    """Sampled notch and its response (f,), cached with the view: a search uses the same modes at every frequency."""
+    if notch not in seen.kept:
+        found = notch.system(seen.step)
+        seen.kept[notch] = found, found.sweep(seen.frequencies)[:, 0, 0]
+    return seen.kept[notch]
 
 
 def _sampled_response(law: Law, seen: View) -> Array | None:
