@@ -9,6 +9,8 @@ import pytest
 
 import flexstage as fs
 from flexstage.apps.cli import run
+from flexstage.control.study.choices import Axes, ControllerKind
+from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from flexstage.control.study.study import loop_study
 from flexstage.models.linear.port import ports
 from flexstage.models.linear.state_space import state_space
@@ -113,6 +115,12 @@ def test_a_loop_controls_the_double_integrator():
     assert found.margins is not None
     (own,) = found.margins.channels
     assert all(np.isfinite(each.value) and each.value > 0.0 for each in (own.gain_low, own.gain_high, own.phase, own.delay))
+
+
+def test_modal_coordinates_need_modes_that_are_not_at_zero():
+    asked = LoopSetup(controller=ControllerSetup(kind=ControllerKind.PID, coordinates=Axes.MODAL))
+    with pytest.raises(fs.DesignError, match="too few independent modes"):
+        loop_study(slide(film()), asked)
 
 
 def test_undefined_statics_are_named():

@@ -235,3 +235,14 @@ def test_no_motion_creeps_to_its_place(shipped):
         left.append(np.max(np.abs(np.diag(np.linalg.inv(np.eye(6) + loops.sense @ gains @ np.linalg.inv(loops.sense))))))
     assert found.judgement.peak <= 2.0
     assert left[1] < 0.25 / 25.0 < left[0] / 5.0
+
+
+def test_a_search_tries_no_law_twice_at_a_frequency(sampled, monkeypatch) -> None:
+    """One width for all modes comes after the loops' own choices, stronger integrators after the lowest peak: with the same laws."""
+    tried = []
+    counted = replace(PI_FAMILY, laws=lambda *asked: tried.append(asked) or PI_FAMILY.laws(*asked))
+    for module in ("attempt", "tune"):
+        monkeypatch.setattr(f"flexstage.control.tuning.{module}.PI_FAMILY", counted)
+    found = tune(sampled, platform_loops(sampled.coordinates), TuningSpec(counted))
+    assert len(found.controller.notches[0]) > 0
+    assert len(tried) == len(set(tried))

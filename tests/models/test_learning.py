@@ -36,6 +36,12 @@ from flexstage.control.systems.system import select
 from flexstage.show.figures.export import to_svg
 
 
+def test_a_mode_that_hardly_rings_needs_no_later_impulses():
+    for shaper in (zv(40.0, 0.999995), zvd(40.0, 0.999995)):
+        assert len(shaper.amplitudes) == len(shaper.times)
+        assert shaper.amplitudes == pytest.approx([1.0] + [0.0] * (len(shaper.times) - 1))
+
+
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.3])
 def test_shapers_leave_a_mode_at_rest(damping):
     """By integration of the mode, not by their formula; a wrong frequency by its square with the derivative."""
