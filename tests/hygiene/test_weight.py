@@ -19,11 +19,11 @@ CEILINGS = {
     "show": 62_600,
     "solid": 71_700,
     "experiment": 96_400,
-    "control": 148_500,
+    "control": 148_800,
     "studies": 69_500,
     "apps": 37_000,
     ".": 400,
-    "all": 803_200,
+    "all": 803_400,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -84,7 +84,9 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
     """
     rows = [COMPONENTS.index(name) for name in coordinates.names]
     scaled = np.real(first_design(found.platform_shapes, 2))[rows] * coordinates.scale[:, None]
-    triangle, order = scipy.linalg.qr(scaled / first_design(found.frequencies, 1), mode="r", pivoting=True, check_finite=False)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a mode at 0 Hz: none is independent of it
+        compliant = scaled / first_design(found.frequencies, 1)
+    triangle, order = scipy.linalg.qr(compliant, mode="r", pivoting=True, check_finite=False)
     sizes = np.abs(np.diag(triangle))
     count = np.count_nonzero(sizes > _DEPENDENT * np.max(sizes, initial=0.0))
     if count == len(rows):
