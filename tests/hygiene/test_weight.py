@@ -12,7 +12,7 @@ CEILINGS = {
     "spatial": 3_900,
     "parts": 37_400,
     "beams": 25_300,
-    "mechanism": 55_100,
+    "mechanism": 55_200,
     "cases": 1_200,
     "models": 96_200,
     "analysis": 69_700,
@@ -20,10 +20,10 @@ CEILINGS = {
     "solid": 71_700,
     "experiment": 96_400,
     "control": 148_800,
-    "studies": 69_500,
+    "studies": 69_600,
     "apps": 37_000,
     ".": 400,
-    "all": 803_400,
+    "all": 803_500,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

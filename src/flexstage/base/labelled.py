@@ -39,7 +39,7 @@ class Matrix(InNotebook):
         column_index = [self.columns.index(column) for column in columns]
         unit = self.unit
         if not isinstance(unit, str):
-            unit = tuple(map(tuple, np.array(unit)[np.ix_(row_index, column_index)].tolist()))
+            unit = tuple(tuple(unit[row][column] for column in column_index) for row in row_index)
         return Matrix(self.values[..., row_index, :][..., column_index], rows, columns, unit)
 
     def to_json(self) -> dict[str, Any]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
-from functools import wraps
+from functools import lru_cache, wraps
 from typing import ParamSpec, TypeVar
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
@@ -23,7 +24,13 @@ def one_thread(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
     @wraps(function)
     def limited(*arguments: _Given.args, **named: _Given.kwargs) -> _Found:
-        with threadpool_limits(limits=1):
+        with _libraries(len(sys.modules)).limit(limits=1):
             return function(*arguments, **named)
 
     return limited
+
+
+@lru_cache(maxsize=1)
+def _libraries(_modules: int) -> ThreadpoolController:
+    """Linear-algebra libraries of this process, updated (in a millisecond) only after further imports."""
+    return ThreadpoolController()

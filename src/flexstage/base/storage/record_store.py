@@ -79,7 +79,7 @@ def from_bytes(data: bytes, key: str, records: tuple[type, ...], made: str = "")
     try:
         head = json.loads(line)
         stated = head.pop("checksum")
-    except (ValueError, KeyError, AttributeError, RecursionError):
+    except (ValueError, KeyError, AttributeError, TypeError, RecursionError):
         raise ValueError("it is damaged: unknown header") from None
     if _checksum(head, body) != stated:
         raise ValueError(f"it is damaged: wrong checksum of its {len(data):,} bytes")

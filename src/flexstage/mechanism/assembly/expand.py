@@ -530,20 +530,27 @@ def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Arr
 def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink | PlacedSuperelement]:
     """Links in the stage's frame; `owners` are the addresses of overrides by rising precedence."""
     units = drawn_units(mechanism)
+    frames = {id(link): _own_frame(link) for item in (mechanism, *units.values()) for link in item.links.values()}
+    lineages = {(unit, own): link_lineage(mechanism, unit, own) for unit, item in units.items() for own in item.links}
     places = {f"{copy}/{own}": (unit, own, frame) for copy, unit, frame in placed for own in units[unit].links}
     for name, drawn, joins in placed_links(mechanism):
         owners, outer = (f"links.{name}",), identity()
         if name in places:
             unit, own, outer = places[name]
-            owners = tuple(f"{owner}/{own}" for owner in link_lineage(mechanism, unit, own))
+            owners = tuple(f"{owner}/{own}" for owner in lineages[unit, own])
         link, part = apply_overrides(mechanism, drawn, (*owners, name))
-        frame = Frame(axes(link.direction, link.bends), stack(link.centre)).within(outer)
+        frame = (frames.get(id(link)) or _own_frame(link)).within(outer)
         if ports_of(part):
             whole = cast("Superelement", inner(part))
             whole, frame = (whole.mirrored, frame.right_handed) if frame.mirrored else (whole, frame)
             yield PlacedSuperelement(name, owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, joins))
         else:
             yield PlacedLink(name, owners[-1], (joins[0], joins[1]), link, part, _seen_from(mechanism, part, frame), frame)
+
+
+def _own_frame(link: Link) -> Frame:
+    """Frame of a link in the frame of its unit."""
+    return Frame(axes(link.direction, link.bends), stack(link.centre))
 
 
 def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:

@@ -58,7 +58,7 @@ def _joint_questions(stage: Stage) -> Iterator[Question]:
         ends = tuple(_end(stage, name, number) for number in (0, 1))
         piece = stage.pieces[name]
         yield Question(
-            f"joint {form_digest(piece.form)} {' '.join(piece_key(each) for end in ends for each in end.pieces)}",
+            f"joint {form_digest(piece.form)} {' '.join(' '.join((str(end.side), *map(piece_key, end.pieces))) for end in ends)}",
             name,
             lambda piece=piece, ends=ends: _link_answers(piece, ends[0], ends[1]),
         )
