@@ -9,7 +9,8 @@ import pytest
 
 from flexstage.base.finding import Finding
 from flexstage.cases.registry import case
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.assembly.pattern import Pose
+from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Unit
 from flexstage.parts.body import Block, Body, Cylinder, Solid
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
@@ -78,6 +79,17 @@ def test_a_link_drawn_backwards_is_told_to_turn() -> None:
     assert "Reverse `along`" in finding.advice
     turned = replace(base, links={"leaf": replace(link, along=(-1.0, 0.0, 0.0))})
     assert contact_findings(turned) == ()
+
+
+def test_a_link_drawn_backwards_is_told_beside_an_equal_one_that_is_not() -> None:
+    base = stage({"block": BLOCK})
+    leaf = base.links["leaf"]
+    arm = Unit(bodies={"tip": Body(solids={"block": BLOCK})}, links={"leaf": replace(leaf, joins=("ground", "tip"))})
+    other = replace(arm, links={"leaf": replace(leaf, joins=("tip", "ground"))})
+    placements = {"A": Placement("one", Pose((0.0, 0.1, 0.0))), "B": Placement("two", Pose((0.0, 0.2, 0.0)))}
+    finding = only(replace(base, units={"one": arm, "two": other}, placements=placements))
+    assert finding.where == "B/leaf"
+    assert "drawn from ground to B/tip" in finding.what
 
 
 def test_a_link_that_meets_its_body_beside_the_end_face() -> None:
