@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from flexstage.base.number import Array
@@ -93,6 +93,9 @@ def test_nothing_cut_off_goes_unnoticed(kept: int) -> None:
 
 
 @given(st.binary(max_size=200))
+@example(b"[]")
+@example(b"[1]\n")
+@example(b"7")
 def test_nonsense_is_refused(data: bytes) -> None:
     with pytest.raises(ValueError, match="it is damaged"):
         from_bytes(data, KEY, RECORDS)
