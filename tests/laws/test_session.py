@@ -47,7 +47,7 @@ def test_memory_stays_the_same_however_many_designs_are_analysed() -> None:
 
 def test_what_is_kept_is_listed_and_cleared() -> None:
     before = frequencies(1)
-    assert SESSION.held()["flexstage.mechanism.assembly.expand.lay_out"] >= 1
+    assert SESSION.held()["flexstage.mechanism.assembly.expand._assembly"] >= 1
     SESSION.clear()
     assert SESSION.held() == {}
     np.testing.assert_array_equal(frequencies(1), before)
