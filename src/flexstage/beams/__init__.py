@@ -13,7 +13,6 @@ from flexstage.beams.piezo import PIEZO
 from flexstage.beams.reinforced_leaf import REINFORCED_LEAF
 from flexstage.beams.rod import ROD
 from flexstage.beams.shear_piezo import SHEAR_PIEZO
-from flexstage.beams.stated import STATED
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.contact import Contact
@@ -40,7 +39,11 @@ _HINGES = {
     Membrane: MEMBRANE,
     Cruciform: CRUCIFORM,
 }
-_STATED = dict.fromkeys((Spring, Amplified, SteppingDrive, ForceActuator, VoiceCoil, RotaryCoil), STATED)
+_BY_MATRICES = PartLaw(
+    stiffness=lambda part: part.stated().stiffness, damping=lambda part: part.stated().damping, mass=lambda part: part.stated().mass
+)
+"""Law of springs and actuators with a specified 6x6 stiffness and mass; coils also have a specified damping."""
+_STATED = dict.fromkeys((Spring, Amplified, SteppingDrive, ForceActuator, VoiceCoil, RotaryCoil), _BY_MATRICES)
 _OWN = {**_HINGES, ComplianceMatrix: MATRIX, Contact: CONTACT, Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, **_STATED}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """Part laws of beam theory, by kind of part."""

@@ -176,7 +176,7 @@ def _locked(folder: Path) -> Generator[None]:
         finally:
             remove_leftovers(folder)
             Path(lock.lock_file).unlink(missing_ok=True)
-            for old in folder.glob("[0-9]*.npz"):  # pieces of earlier versions, which are computed anew
+            for old in folder.glob("[0-9]*.npz"):  # pieces of earlier versions, which are computed again
                 old.unlink(missing_ok=True)
             with contextlib.suppress(OSError):  # pieces that could not be combined remain
                 folder.rmdir()
